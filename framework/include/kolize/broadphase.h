@@ -1,0 +1,47 @@
+// Broadphase: from the bounds of all boxes to the pairs that may touch.
+#pragma once
+
+#include <kolize/math.h>
+#include <kolize/stage.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace kolize {
+
+// Two rows (or bodies), a < b.
+struct Pair {
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;
+    friend auto operator<=>(const Pair&, const Pair&) = default;
+};
+
+struct BroadphaseInput {
+    // World-frame boxes in metres, finite, min <= max in every axis. A row keeps its meaning while `generation` stays.
+    std::span<const Aabb> bounds;
+    // 1 where the row never moves while `generation` stays. Same length as bounds.
+    std::span<const std::uint8_t> is_static;
+    // Changes whenever rows were added, removed or renumbered, or a static row moved.
+    std::uint64_t generation = 0;
+};
+
+// Contract (held by the conformance suite for every plugin):
+// - conservative: every pair of overlapping closed boxes is reported, unless both rows are static;
+// - a pair whose boxes do not overlap may be reported; a pair of two static rows may not;
+// - no pair twice, never a row with itself, a < b; the order is free (the framework sorts);
+// - the same input gives the same set, whatever came before and however many threads the host has;
+// - non-finite or inverted boxes: std::invalid_argument that names the row;
+// - warm calls of the same size allocate nothing.
+class KOLIZE_API Broadphase : public Stage {
+public:
+    static constexpr StageKind kind = StageKind::broadphase;
+
+    // Appends to `pairs`, which comes empty and keeps its capacity between steps.
+    virtual void find_pairs(const BroadphaseInput& input, std::vector<Pair>& pairs) = 0;
+};
+
+// Throws std::invalid_argument naming the first row whose box is not finite or has min > max.
+KOLIZE_API void require_valid_bounds(std::span<const Aabb> bounds);
+
+}  // namespace kolize

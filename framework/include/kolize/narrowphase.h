@@ -1,0 +1,36 @@
+// Narrowphase: from candidate pairs to contacts.
+#pragma once
+
+#include <kolize/contact.h>
+#include <kolize/world.h>
+
+namespace kolize {
+
+struct NarrowphaseInput {
+    const World& world;
+    std::span<const Pair> pairs;     // body ids, a < b, sorted, no duplicates, never two static bodies
+    std::span<const Detail> detail;  // what to find out about each pair; same length as pairs
+};
+
+// Contract (held by the conformance suite for every plugin):
+// - a pair gets rows exactly when the two solids' surfaces overlap as far as this plugin can tell;
+// - rows stand in canonical order and hold what contact.h says, no more than the detail asked for;
+// - swapping the two bodies swaps the arms and negates the normal; moving or turning both changes nothing else;
+// - the answer for a pair does not depend on the other pairs, on earlier steps or on the number of threads;
+// - no NaN leaves, whatever comes in: a non-finite pose gives std::invalid_argument naming the body;
+// - warm calls allocate nothing.
+class KOLIZE_API Narrowphase : public Stage {
+public:
+    static constexpr StageKind kind = StageKind::narrowphase;
+
+    // The most detail this object, as configured, can give.
+    virtual Detail gives() const = 0;
+
+    // Called once before the first step, and again if the world's shapes change.
+    virtual void prepare(const World& world) = 0;
+
+    // Appends to `contacts`, which comes empty and keeps its capacity between steps.
+    virtual void find_contacts(const NarrowphaseInput& input, Contacts& contacts) = 0;
+};
+
+}  // namespace kolize

@@ -1,0 +1,41 @@
+// Response: from contacts to changed velocities, removed bodies and events.
+#pragma once
+
+#include <kolize/contact.h>
+#include <kolize/world.h>
+
+namespace kolize {
+
+enum class EventKind : std::uint32_t { explosion, removal };
+
+struct Event {
+    EventKind kind = EventKind::explosion;
+    std::uint32_t body = 0;
+    Vec3 position = Vec3::Zero();  // world frame, m
+};
+
+struct ResponseInput {
+    std::span<Contact> contacts;        // those that the rule takes, in canonical order; `impulse` is to be written
+    std::span<const std::uint8_t> hit;  // per contact: bit 0 set if body A fits the rule's `when`, bit 1 for body B
+    double dt = 0;                      // s
+};
+
+struct ResponseOutput {
+    std::vector<Event>& events;  // append; the framework removes the body of a removal event after the stage
+    double dissipated_J = 0;     // add the kinetic energy that restitution < 1 takes away, so that drift is error only
+    std::uint64_t unresolved = 0;  // add the contacts still approaching when an iteration limit was reached
+};
+
+// Contract (held by the conformance suite for every plugin):
+// - writes velocities and angular velocities of the dynamic bodies in its contacts, events and impulses; nothing else;
+// - sees all contacts of its rule in a step at once, and depends on their order only through the canonical one;
+// - reports every impulse it gives, so that momentum exchanged with static bodies can be accounted for;
+// - finite input gives finite output; warm calls allocate nothing.
+class KOLIZE_API Response : public Stage {
+public:
+    static constexpr StageKind kind = StageKind::response;
+
+    virtual void respond(const ResponseInput& input, World& world, ResponseOutput& output) = 0;
+};
+
+}  // namespace kolize

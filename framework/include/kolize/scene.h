@@ -1,0 +1,89 @@
+// A scene file (TOML): what there is, and how it is to be computed.
+#pragma once
+
+#include <kolize/plugin_library.h>
+#include <kolize/world.h>
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace kolize {
+
+// Static walls around a box-shaped space; open sides have none.
+struct Room {
+    Vec3 min = Vec3::Zero();  // m
+    Vec3 max = Vec3::Zero();
+    double thickness = 1;  // m; used where walls are boxes
+    std::uint32_t material = 0;
+    std::array<bool, 6> open{};  // -x +x -y +y -z +z
+};
+
+// [[response]]: the first rule that fits a contact takes it.
+struct ResponseRule {
+    StageConfig stage;
+    std::vector<std::string> kinds;  // empty: every contact; one: either body is of it; two: the pair is of these
+};
+
+struct StepConfig {
+    double dt = 1.0 / 240;         // s
+    std::string mode = "discrete";  // discrete | rollback | bisection
+    std::string integrator = "pdmv4";
+    double tolerance = 1e-3;   // bisection: the impact time is found to this share of dt
+    int max_impacts = 64;      // bisection: impacts resolved in one step before the rest is taken discretely
+    double time = 10;          // s; how long `kolize run` goes on when not told
+};
+
+struct PipelineConfig {
+    StageConfig broadphase;
+    StageConfig narrowphase;
+    std::string walls = "auto";  // narrowphase.walls: auto | half_space | box | mesh
+    std::vector<ResponseRule> responses;
+    StepConfig step;
+};
+
+struct Scene {
+    std::string file;  // as the user named it
+    World world;       // bodies of [[body]]; rooms become bodies when a simulation is made
+    std::vector<Room> rooms;
+    PipelineConfig pipeline;
+};
+
+// Names of plugins that are taken where neither scene nor pipeline names one.
+struct PluginDefaults {
+    std::string broadphase;
+    std::string narrowphase;
+    std::string response;
+};
+
+struct SceneOptions {
+    std::filesystem::path pipeline;  // its tables replace the scene's, whole table by whole table; "": none
+    std::vector<std::pair<std::string, std::string>> set;  // dotted key, TOML value (bare words are text)
+    PluginDefaults defaults;
+};
+
+// Reads scene, pipeline and meshes. Throws Error with file:line:column (or "--set key" as the file) for anything wrong:
+// syntax, unknown keys (with the nearest name), wrong types, values out of range, missing or broken files, NaN,
+// non-positive mass.
+// Plugin parameters are checked later, by PluginLibrary::make, except that a key which --set left behind from a
+// plugin that it replaced is dropped when the new plugin has no such parameter: `plugins` tells.
+KOLIZE_API Scene load_scene(const std::filesystem::path& file, const SceneOptions& options,
+                            const PluginLibrary& plugins);
+
+// The rows of a CSV table of states: any of the columns x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz,mass in any order, named by
+// the first line. `columns` are taken where the first line is numbers already; if empty, it has to name them. What the
+// table leaves out has the value of a default BodyDescription. Throws Error with line and column of the cell.
+KOLIZE_API std::vector<BodyDescription> read_states(const std::filesystem::path& file,
+                                                    const std::vector<std::string>& columns = {});
+
+// Whole steps that come nearest to a time (s). Throws Error for more than a thousand million.
+KOLIZE_API std::uint64_t steps_in(double time, double dt);
+
+// One stage configured by `--set STAGE.KEY=VALUE` entries alone, for programs that run a stage without a scene.
+// Throws Error for an entry that is not of this stage.
+KOLIZE_API StageConfig stage_config(StageKind stage, const std::vector<std::pair<std::string, std::string>>& set,
+                                    const std::string& default_plugin);
+
+}  // namespace kolize

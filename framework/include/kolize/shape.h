@@ -1,0 +1,45 @@
+// Shapes and materials: immutable, shared by all bodies that name them.
+#pragma once
+
+#include <kolize/mesh.h>
+
+namespace kolize {
+
+enum class ShapeKind : std::uint32_t { sphere, box, half_space, mesh };
+
+inline constexpr std::uint32_t bit(ShapeKind kind) { return 1u << static_cast<std::uint32_t>(kind); }
+inline constexpr std::uint32_t all_shape_kinds = 0b1111;
+
+KOLIZE_API const char* to_string(ShapeKind);
+
+// Geometry in the body frame: origin at the centre of mass, axes along the principal axes of inertia.
+// The model frame is the one of the scene (a mesh file's origin and axes).
+struct Shape {
+    std::string name;
+    ShapeKind kind = ShapeKind::sphere;
+    double radius = 0;                      // sphere: m. Every bounded kind: largest distance from the body origin, m
+    Vec3 half_extents = Vec3::Zero();       // box, m
+    Vec3 normal = Vec3::UnitY();            // half_space: unit, points out of the solid
+    std::shared_ptr<const Mesh> mesh;       // mesh; for a box: its twelve triangles
+    Aabb bounds;                            // in the body frame; infinite for a half_space
+    double volume = 0;                      // m^3; infinite for a half_space
+    Vec3 moments = Vec3::Zero();            // principal moments over mass, m^2
+    Vec3 center_in_model = Vec3::Zero();    // centre of mass in the model frame, m
+    Quat body_to_model = Quat::Identity();
+};
+
+KOLIZE_API Shape make_sphere(std::string name, double radius);
+KOLIZE_API Shape make_box(std::string name, const Vec3& half_extents);
+// The solid {p : normal . p <= offset} of the model frame; the body origin is the plane's point normal * offset.
+KOLIZE_API Shape make_half_space(std::string name, const Vec3& normal, double offset);
+// The soup must be closed (see inspect): throws std::invalid_argument with the defect otherwise.
+KOLIZE_API Shape make_mesh(std::string name, const TriangleSoup& closed_surface);
+
+struct Material {
+    std::string name = "default";
+    double restitution = 1.0;  // 0..1; of two bodies the larger one counts
+    double friction = 0.0;     // >= 0; of two bodies the geometric mean counts
+    double density = 1000.0;   // kg/m^3, used where a body gives no mass
+};
+
+}  // namespace kolize

@@ -1,0 +1,73 @@
+// One scene run through one pipeline: the ring integrate -> broadphase -> narrowphase -> response, measured.
+#pragma once
+
+#include <kolize/integrator.h>
+#include <kolize/mesh_narrowphase.h>
+#include <kolize/scene.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace kolize {
+
+// Host with oneTBB threads and the spdlog log. threads >= 1.
+KOLIZE_API std::unique_ptr<Host> make_host(int threads);
+
+struct StageTime {
+    double median_us = 0;  // per step
+    double p95_us = 0;
+    double total_s = 0;
+};
+
+// What a run gave: the numbers of `run --json`. Formulas in docs/accuracy.md.
+struct RunResult {
+    std::string scene;
+    std::uint64_t bodies = 0;
+    std::uint64_t steps = 0;
+    double dt = 0;    // s
+    double time = 0;  // simulated, s
+    int threads = 1;
+    StageTime integrate, broadphase, narrowphase, response, step;
+    std::uint64_t pairs = 0, contacts = 0, triangle_tests = 0, events = 0, unresolved = 0;
+    double energy_initial_J = 0, energy_final_J = 0, energy_drift = 0, momentum_drift = 0, angular_momentum_drift = 0;
+    double max_penetration_m = 0;
+    std::uint64_t escaped = 0, stuck = 0;
+    std::uint64_t state_hash = 0;
+};
+
+// A stage of the running pipeline as it is in force, for the echo in results.
+struct EffectiveStage {
+    std::string plugin;
+    std::string when;  // response rules: "missile", "ball,ball", or "" for every contact
+    std::vector<std::pair<std::string, Value>> settings;
+};
+
+class KOLIZE_API Simulation {
+public:
+    // Makes the stages and negotiates: throws Error, before any step, in a sentence that names a plugin that would do, if a
+    // response needs more than the narrowphase gives or a shape is not taken. `expected_steps` sizes the sample buffers.
+    Simulation(const Scene& scene, const PluginLibrary& plugins, Host& host, std::uint64_t expected_steps);
+    ~Simulation();
+
+    // Advances by one dt. A failing stage throws std::runtime_error that names stage, plugin, step and the pair.
+    void step();
+
+    const World& world() const;
+    const std::vector<Pair>& pairs() const;        // of the last step, canonical order, body ids
+    const Contacts& contacts() const;              // of the last step
+    const std::vector<Event>& events() const;      // of the last step
+    RunResult result() const;
+    std::uint64_t state_hash() const;              // FNV-1a over the bits of all bodies' state
+    EffectiveStage broadphase() const;
+    EffectiveStage narrowphase() const;
+    std::vector<EffectiveStage> responses() const;
+    const StepConfig& step_config() const;
+    std::string walls() const;                     // what rooms were made of: half_space, box or mesh
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace kolize

@@ -1,0 +1,257 @@
+#include "boxes.h"
+#include "suite.h"
+
+#include <kolize/simulation.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+namespace kolize {
+
+namespace {
+
+using Rows = std::vector<std::uint32_t>;
+
+std::string to_text(const Pair& pair) { return "(" + std::to_string(pair.a) + ", " + std::to_string(pair.b) + ")"; }
+
+// "" if the pairs are a right answer: no overlapping pair is missing, and each one may stand there.
+std::string fault(const BoxScene& scene, std::vector<Pair> pairs) {
+    std::sort(pairs.begin(), pairs.end());
+    for (const Pair& pair : pairs) {
+        if (pair.a >= pair.b) return "pair " + to_text(pair) + " is not in order a < b";
+        if (pair.b >= scene.bounds.size()) return "pair " + to_text(pair) + " names a row that does not exist";
+        if (scene.is_static[pair.a] && scene.is_static[pair.b]) return "pair " + to_text(pair) + " is of two static rows";
+    }
+    if (const auto twice = std::adjacent_find(pairs.begin(), pairs.end()); twice != pairs.end())
+        return "pair " + to_text(*twice) + " is reported twice";
+    std::vector<Pair> missing;
+    const std::vector<Pair> expected = overlapping_pairs(scene);
+    std::set_difference(expected.begin(), expected.end(), pairs.begin(), pairs.end(), std::back_inserter(missing));
+    return missing.empty() ? "" : "pair " + to_text(missing.front()) + " overlaps and is missing";
+}
+
+// The plugin under test; the checks are its member functions.
+class BroadphaseChecks {
+public:
+    BroadphaseChecks(const PluginLibrary& library, const LoadedPlugin& plugin, const ConformanceOptions& options)
+        : library_(library), plugin_(plugin), options_(options) {}
+
+    void scene(const BoxSceneKind& kind) const {
+        for (std::uint64_t seed = options_.seed; seed < options_.seed + 3; ++seed) expect_right(kind.make(seed));
+    }
+
+    void small_counts() const {
+        for (std::size_t count = 0; count <= 3; ++count)
+            for (std::uint64_t seed = options_.seed; seed < options_.seed + 10; ++seed)
+                expect_right(uniform_boxes(count, seed));
+    }
+
+    void permuted_rows() const {
+        std::mt19937_64 random(options_.seed);
+        const BoxScene boxes = uniform_boxes(200, options_.seed);
+        Rows order(boxes.bounds.size());
+        std::iota(order.begin(), order.end(), 0u);
+        for (int round = 0; round < 4; ++round) {
+            std::shuffle(order.begin(), order.end(), random);
+            expect_right(permute(boxes, order));
+        }
+    }
+
+    // Scaling by a power of two and turning by a right angle change no comparison.
+    void moved_whole() const {
+        BoxScene boxes = uniform_boxes(200, options_.seed);
+        for (const double scale : {0x1p-30, 0x1p60}) {
+            for (Aabb& box : boxes.bounds) {
+                box = {scale * box.min, scale * box.max};
+                box = {{-box.max.y(), box.min.x(), box.min.z()}, {-box.min.y(), box.max.x(), box.max.z()}};
+            }
+            expect_right(boxes);
+        }
+    }
+
+    // One object over many frames gives what a new object gives for each.
+    void motion() const {
+        const auto host = make_host(1);
+        const auto stage = make(*host);
+        BoxScene boxes = uniform_boxes(200, options_.seed);
+        for (std::size_t row = 0; row < boxes.is_static.size(); row += 3) boxes.is_static[row] = 1;
+        for (std::uint64_t frame = 0; frame < 40; ++frame) {
+            expect_same(find(*stage, boxes, 1), boxes, "frame " + std::to_string(frame) + " of moving boxes");
+            move_boxes(boxes, options_.seed + frame);
+        }
+    }
+
+    void changed_generation() const {
+        std::mt19937_64 random(options_.seed);
+        const auto host = make_host(1);
+        const auto stage = make(*host);
+        for (std::uint64_t generation = 1; generation <= 40; ++generation) {
+            BoxScene boxes = uniform_boxes(random() % 100, generation);
+            for (std::uint8_t& flag : boxes.is_static) flag = random() % 2;
+            for (int frame = 0; frame < 3; ++frame) {
+                expect_same(find(*stage, boxes, generation), boxes, "generation " + std::to_string(generation));
+                move_boxes(boxes, random());
+            }
+        }
+    }
+
+    void threads() const {
+        const BoxScene boxes = uniform_boxes(2000, options_.seed);
+        for (const int threads : {1, 2, 8}) {
+            const auto host = make_host(threads);
+            const auto stage = make(*host);
+            for (int repeat = 0; repeat < 3; ++repeat)
+                expect_same(find(*stage, boxes, 1), boxes, std::to_string(threads) + " threads");
+        }
+    }
+
+    // The ends of every parameter's range, and each of its choices.
+    void parameters() const {
+        BoxScene boxes = uniform_boxes(150, options_.seed);
+        boxes.bounds[3] = {Vec3::Constant(-50), Vec3::Constant(50)};
+        for (const Parameter& parameter : plugin_.parameters.items)
+            for (const Value& value : values_to_try(parameter)) {
+                const auto host = make_host(1);
+                const auto stage = make(*host, {{parameter.name, {value, {}}}});
+                expect_right(find(*stage, boxes, 1), boxes, parameter.name + " = " + to_string(value));
+            }
+    }
+
+    void refuses_non_finite() const {
+        for (const double bad : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity})
+            for (int axis = 0; axis < 3; ++axis) {
+                expect_refused([&](Aabb& box) { box.min[axis] = bad; });
+                expect_refused([&](Aabb& box) { box.max[axis] = bad; });
+            }
+    }
+
+    void refuses_inverted() const {
+        for (int axis = 0; axis < 3; ++axis)
+            expect_refused([&](Aabb& box) { std::swap(box.min[axis], box.max[axis]); });
+    }
+
+    void warm_calls_allocate_nothing() const {
+        if (!options_.allocations) throw Inapplicable("this program does not count allocations");
+        const auto host = make_host(1);
+        const auto stage = make(*host);
+        BoxScene boxes = uniform_boxes(1000, options_.seed);
+        std::vector<Pair> pairs;
+        pairs.reserve(100 * boxes.bounds.size());
+        std::size_t count = 0;
+        for (std::uint64_t call = 0; call < 20; ++call) {
+            pairs.clear();
+            const std::size_t before = options_.allocations();
+            stage->find_pairs({boxes.bounds, boxes.is_static, 1}, pairs);
+            if (call >= 3) count += options_.allocations() - before;
+            move_boxes(boxes, call);
+        }
+        if (count > 0) throw Violation(std::to_string(count) + " allocations in 17 warm calls on 1000 moving boxes");
+    }
+
+private:
+    using Settings = std::map<std::string, Setting>;
+
+    StagePtr<Broadphase> make(Host& host, const Settings& settings = {}) const {
+        return library_.make<Broadphase>({plugin_.descriptor->name, {}, settings}, host);
+    }
+
+    static std::vector<Pair> find(Broadphase& stage, const BoxScene& scene, std::uint64_t generation) {
+        std::vector<Pair> pairs;
+        stage.find_pairs({scene.bounds, scene.is_static, generation}, pairs);
+        return pairs;
+    }
+
+    std::vector<Pair> find_afresh(const BoxScene& scene) const {
+        const auto host = make_host(1);
+        return find(*make(*host), scene, 1);
+    }
+
+    static std::vector<Value> values_to_try(const Parameter& parameter) {
+        std::vector<Value> values{parameter.default_value};
+        for (const std::string& choice : parameter.choices) values.push_back(choice);
+        if (std::holds_alternative<bool>(parameter.default_value)) values = {false, true};
+        constexpr double most = std::numeric_limits<double>::max();
+        for (const double end : {parameter.min, parameter.max}) {
+            if (end == -most || end == most) continue;
+            if (std::holds_alternative<double>(parameter.default_value)) values.push_back(end);
+            if (std::holds_alternative<std::int64_t>(parameter.default_value))
+                values.push_back(static_cast<std::int64_t>(end));
+        }
+        return values;
+    }
+
+    void expect_right(const BoxScene& scene) const {
+        if (!fault(scene, find_afresh(scene)).empty()) throw_reduced(scene);
+    }
+
+    static void expect_right(const std::vector<Pair>& pairs, const BoxScene& scene, const std::string& what) {
+        if (const std::string wrong = fault(scene, pairs); !wrong.empty())
+            throw Violation(what + ": " + wrong + ": " + to_code(scene));
+    }
+
+    // `pairs` are right, and the very ones that a new object finds.
+    void expect_same(std::vector<Pair> pairs, const BoxScene& scene, const std::string& what) const {
+        expect_right(pairs, scene, what);
+        std::vector<Pair> afresh = find_afresh(scene);
+        std::sort(pairs.begin(), pairs.end());
+        std::sort(afresh.begin(), afresh.end());
+        if (pairs != afresh) throw Violation(what + ": not the pairs that a new object finds: " + to_code(scene));
+    }
+
+    // Leaves out boxes as long as the answer stays wrong, so that what is printed is short.
+    [[noreturn]] void throw_reduced(BoxScene scene) const {
+        for (std::size_t row = scene.bounds.size(); row-- > 0;) {
+            Rows others(scene.bounds.size());
+            std::iota(others.begin(), others.end(), 0u);
+            others.erase(others.begin() + static_cast<std::ptrdiff_t>(row));
+            BoxScene smaller = permute(scene, others);
+            if (!fault(smaller, find_afresh(smaller)).empty()) scene = std::move(smaller);
+        }
+        throw Violation(fault(scene, find_afresh(scene)) + ": " + to_code(scene));
+    }
+
+    template <class Spoil>
+    void expect_refused(Spoil&& spoil) const {
+        constexpr std::size_t bad_row = 17;
+        const auto host = make_host(1);
+        const auto stage = make(*host);
+        const BoxScene good = uniform_boxes(30, options_.seed);
+        BoxScene bad = good;
+        spoil(bad.bounds[bad_row]);
+        try {
+            find(*stage, bad, 1);
+        } catch (const std::invalid_argument& e) {
+            if (std::string(e.what()).find(std::to_string(bad_row)) == std::string::npos)
+                throw Violation("the message does not name row 17: " + std::string(e.what()));
+            return expect_same(find(*stage, good, 2), good, "after a refused call");
+        }
+        throw Violation("no std::invalid_argument for row 17: " + to_code(bad));
+    }
+
+    const PluginLibrary& library_;
+    const LoadedPlugin& plugin_;
+    const ConformanceOptions& options_;
+};
+
+}  // namespace
+
+std::vector<Check> check_broadphase(const PluginLibrary& library, const LoadedPlugin& plugin,
+                                    const ConformanceOptions& options) {
+    const BroadphaseChecks checks(library, plugin, options);
+    Suite suite;
+    for (const BoxSceneKind& kind : box_scene_kinds()) suite.run(kind.name, [&] { checks.scene(kind); });
+    suite.run("none, one, two, three boxes", [&] { checks.small_counts(); });
+    suite.run("permuted rows", [&] { checks.permuted_rows(); });
+    suite.run("the whole scaled and turned", [&] { checks.moved_whole(); });
+    suite.run("moving boxes, rows kept", [&] { checks.motion(); });
+    suite.run("rows added and removed", [&] { checks.changed_generation(); });
+    suite.run("1, 2 and 8 threads", [&] { checks.threads(); });
+    suite.run("ends of all parameter ranges", [&] { checks.parameters(); });
+    suite.run("refuses non-finite boxes", [&] { checks.refuses_non_finite(); });
+    suite.run("refuses inverted boxes", [&] { checks.refuses_inverted(); });
+    suite.run("warm calls allocate nothing", [&] { checks.warm_calls_allocate_nothing(); });
+    return suite.take();
+}
+
+}  // namespace kolize

@@ -1,0 +1,27 @@
+// Scenes of impacts for the response suite.
+#pragma once
+
+#include <kolize/response.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace kolize {
+
+struct ImpactScene {
+    World world;
+    std::vector<Contact> contacts;  // canonical order
+    std::vector<std::uint8_t> hit;
+};
+
+// Random bodies, some static, some without a contact, and `count` contacts between them. Rows hold what `detail` says.
+ImpactScene random_impacts(std::size_t count, Detail detail, double restitution, std::uint64_t seed);
+
+// The same scene turned and moved as a whole.
+ImpactScene moved(const ImpactScene& scene, const Quat& turn, const Vec3& shift);
+
+// The bodies and contacts as text that tells one case from another and can be rebuilt from.
+std::string to_text(const ImpactScene& scene);
+
+}  // namespace kolize

@@ -1,0 +1,244 @@
+#include "impacts.h"
+#include "suite.h"
+
+#include <kolize/simulation.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace kolize {
+
+namespace {
+
+struct Answer {
+    ImpactScene scene;  // after the response
+    std::vector<Event> events;
+    double dissipated_J = 0;
+    std::uint64_t unresolved = 0;
+};
+
+bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(a.data(), b.data(), sizeof(Vec3)) == 0; }
+
+double kinetic_energy(const World& world) {
+    double energy = 0;
+    for (std::uint32_t i = 0; i < world.size(); ++i) energy += world.kinetic_energy(i);
+    return energy;
+}
+
+std::vector<std::uint8_t> touched_bodies(const ImpactScene& scene) {
+    std::vector<std::uint8_t> touched(scene.world.size(), 0);
+    for (const Contact& c : scene.contacts) touched[c.a] = touched[c.b] = 1;
+    return touched;
+}
+
+[[noreturn]] void violate(const std::string& what, const ImpactScene& scene) {
+    throw Violation(what + ": " + to_text(scene));
+}
+
+void expect_same(const World& got, const World& expected, const std::string& what, const ImpactScene& scene) {
+    for (std::size_t i = 0; i < got.size(); ++i)
+        if (!same_bits(got.velocity[i], expected.velocity[i]) ||
+            !same_bits(got.angular_velocity[i], expected.angular_velocity[i]))
+            violate(what + ": body " + std::to_string(i) + " moves otherwise", scene);
+}
+
+// The plugin under test; the checks are its member functions.
+class ResponseChecks {
+public:
+    ResponseChecks(const PluginLibrary& library, const LoadedPlugin& plugin, const ConformanceOptions& options)
+        : library_(library), plugin_(plugin), options_(options) {}
+
+    void nothing_to_answer() const {
+        const ImpactScene scene = impacts(0, 1, options_.seed);
+        const Answer answer = respond(scene);
+        expect_same(answer.scene.world, scene.world, "without contacts", scene);
+        if (!answer.events.empty() || answer.dissipated_J != 0 || answer.unresolved != 0)
+            violate("without contacts there is something to report", scene);
+    }
+
+    void writes_nothing_else() const {
+        for_each_scene([&](const ImpactScene& scene) {
+            const World& before = scene.world;
+            const Answer answer = respond(scene);
+            const World& after = answer.scene.world;
+            const std::vector<std::uint8_t> touched = touched_bodies(scene);
+            for (std::size_t i = 0; i < before.size(); ++i) {
+                const std::string body = "body " + std::to_string(i);
+                if (!same_bits(before.position[i], after.position[i]) ||
+                    before.orientation[i].coeffs() != after.orientation[i].coeffs())
+                    violate(body + " is moved", scene);
+                if (touched[i] && !before.is_static[i]) continue;
+                if (!same_bits(before.velocity[i], after.velocity[i]) ||
+                    !same_bits(before.angular_velocity[i], after.angular_velocity[i]))
+                    violate(body + " is static or has no contact, and its velocity changes", scene);
+            }
+            if (after.size() != before.size() || after.inverse_mass != before.inverse_mass ||
+                after.inverse_inertia != before.inverse_inertia || after.removed != before.removed ||
+                after.is_static != before.is_static || after.kind != before.kind)
+                violate("a constant of the bodies is changed", scene);
+        });
+    }
+
+    void reports_every_impulse() const {
+        for_each_scene([&](const ImpactScene& scene) {
+            const Answer answer = respond(scene);
+            std::vector<Vec3> momentum(scene.world.size(), Vec3::Zero());
+            double scale = 0;
+            for (const Contact& c : answer.scene.contacts) {
+                if (!(c.impulse >= 0)) violate("an impulse is negative or not a number", scene);
+                momentum[c.a] -= c.impulse * c.normal;
+                momentum[c.b] += c.impulse * c.normal;
+                scale += c.impulse;
+            }
+            for (std::size_t i = 0; i < momentum.size(); ++i) {
+                if (scene.world.is_static[i]) continue;
+                const Vec3 change =
+                    (answer.scene.world.velocity[i] - scene.world.velocity[i]) / scene.world.inverse_mass[i];
+                if (!((change - momentum[i]).norm() <= 1e-12 * (1 + scale)))
+                    violate("the momentum of body " + std::to_string(i) + " is not that of its impulses", scene);
+            }
+        });
+    }
+
+    void energy_is_accounted_for() const {
+        for_each_scene([&](const ImpactScene& scene) {
+            const double before = kinetic_energy(scene.world);
+            const Answer answer = respond(scene);
+            const double lost = before - kinetic_energy(answer.scene.world);
+            if (!(std::abs(lost - answer.dissipated_J) <= 1e-11 * before))
+                violate("lost " + std::to_string(lost) + " J, reported " + std::to_string(answer.dissipated_J), scene);
+        });
+    }
+
+    void same_bits_again() const {
+        for_each_scene([&](const ImpactScene& scene) {
+            const Answer afresh = respond(scene);
+            for (const int threads : {1, 2, 8}) {
+                const auto host = make_host(threads);
+                const auto stage = make(*host);
+                respond(*stage, impacts(7, 0.5, options_.seed + 99));
+                const Answer again = respond(*stage, scene);
+                expect_same(again.scene.world, afresh.scene.world,
+                            "after another scene, on " + std::to_string(threads) + " threads", scene);
+            }
+        });
+    }
+
+    void turned_and_moved() const {
+        const Quat turn(Eigen::AngleAxisd(1.1, Vec3(1, 2, 3).normalized()));
+        for (std::uint64_t seed = options_.seed; seed < options_.seed + 20; ++seed) {
+            const ImpactScene scene = impacts(2, 1, seed);
+            const World here = respond(scene).scene.world;
+            const World there = respond(moved(scene, turn, Vec3(1e6, -2e6, 3e6))).scene.world;
+            for (std::size_t i = 0; i < here.size(); ++i)
+                if (!((there.velocity[i] - turn * here.velocity[i]).norm() <= 1e-9) ||
+                    !((there.angular_velocity[i] - turn * here.angular_velocity[i]).norm() <= 1e-9))
+                    violate("body " + std::to_string(i) + " moves otherwise when all is turned and moved", scene);
+        }
+    }
+
+    void events_are_of_touching_bodies() const {
+        for_each_scene([&](const ImpactScene& scene) {
+            const std::vector<std::uint8_t> touched = touched_bodies(scene);
+            std::vector<std::uint8_t> gone(scene.world.size(), 0);
+            for (const Event& event : respond(scene).events) {
+                if (event.body >= touched.size() || !touched[event.body] || scene.world.is_static[event.body])
+                    violate("an event is of static or untouched body " + std::to_string(event.body), scene);
+                if (!event.position.allFinite()) violate("an event has no finite position", scene);
+                if (event.kind == EventKind::removal && gone[event.body]++)
+                    violate("body " + std::to_string(event.body) + " is removed twice", scene);
+            }
+        });
+    }
+
+    // Bodies at rest, coincident centres, and masses and speeds thirty decades apart.
+    void finite_stays_finite() const {
+        for (const double scale : {0.0, 1e-150, 1e-15, 1e15, 1e100}) {
+            ImpactScene scene = impacts(12, 1, options_.seed);
+            for (std::size_t i = 0; i < scene.world.size(); ++i) {
+                scene.world.velocity[i] *= scale;
+                scene.world.angular_velocity[i] *= scale;
+                if (i % 3 == 0) scene.world.inverse_mass[i] *= 1e15;
+                if (i % 5 == 0) scene.world.inverse_inertia[i] *= 1e-15;
+            }
+            for (Contact& c : scene.contacts) c.arm_a = c.arm_b = Vec3::Zero();
+            const Answer answer = respond(scene);
+            for (std::size_t i = 0; i < scene.world.size(); ++i)
+                if (!answer.scene.world.velocity[i].allFinite() || !answer.scene.world.angular_velocity[i].allFinite())
+                    violate("body " + std::to_string(i) + " has a velocity that is not finite", scene);
+        }
+    }
+
+    void warm_calls_allocate_nothing() const {
+        if (!options_.allocations) throw Inapplicable("this program does not count allocations");
+        const auto host = make_host(1);
+        const auto stage = make(*host);
+        const ImpactScene start = impacts(200, 1, options_.seed);
+        ImpactScene scene = start;
+        std::vector<Event> events;
+        std::size_t count = 0;
+        for (int call = 0; call < 4; ++call) {
+            scene = start;
+            events.clear();
+            ResponseOutput output{events};
+            const std::size_t before = options_.allocations();
+            stage->respond({scene.contacts, scene.hit, 0.01}, scene.world, output);
+            count = options_.allocations() - before;
+        }
+        if (count > 0) throw Violation(std::to_string(count) + " allocations in the fourth call on 200 contacts");
+    }
+
+private:
+    StagePtr<Response> make(Host& host) const {
+        return library_.make<Response>({plugin_.descriptor->name, {}, {}}, host);
+    }
+
+    ImpactScene impacts(std::size_t count, double restitution, std::uint64_t seed) const {
+        return random_impacts(count, plugin_.descriptor->capabilities.uses, restitution, seed);
+    }
+
+    static Answer respond(Response& stage, const ImpactScene& scene) {
+        Answer answer{scene, {}, 0, 0};
+        ResponseOutput output{answer.events};
+        stage.respond({answer.scene.contacts, answer.scene.hit, 0.01}, answer.scene.world, output);
+        answer.dissipated_J = output.dissipated_J;
+        answer.unresolved = output.unresolved;
+        return answer;
+    }
+
+    Answer respond(const ImpactScene& scene) const {
+        const auto host = make_host(1);
+        return respond(*make(*host), scene);
+    }
+
+    template <class CheckScene>
+    void for_each_scene(CheckScene&& check) const {
+        for (std::uint64_t seed = options_.seed; seed < options_.seed + 5; ++seed)
+            for (const std::size_t count : {1, 2, 5, 20})
+                for (const double restitution : {1.0, 0.5, 0.0}) check(impacts(count, restitution, seed));
+    }
+
+    const PluginLibrary& library_;
+    const LoadedPlugin& plugin_;
+    const ConformanceOptions& options_;
+};
+
+}  // namespace
+
+std::vector<Check> check_response(const PluginLibrary& library, const LoadedPlugin& plugin,
+                                  const ConformanceOptions& options) {
+    const ResponseChecks checks(library, plugin, options);
+    Suite suite;
+    suite.run("no contacts, no change", [&] { checks.nothing_to_answer(); });
+    suite.run("writes velocities of touching bodies only", [&] { checks.writes_nothing_else(); });
+    suite.run("reports every impulse", [&] { checks.reports_every_impulse(); });
+    suite.run("accounts for kinetic energy", [&] { checks.energy_is_accounted_for(); });
+    suite.run("same bits again, 1, 2 and 8 threads", [&] { checks.same_bits_again(); });
+    suite.run("the whole turned and moved", [&] { checks.turned_and_moved(); });
+    suite.run("events are of touching bodies", [&] { checks.events_are_of_touching_bodies(); });
+    suite.run("finite input, finite output", [&] { checks.finite_stays_finite(); });
+    suite.run("warm calls allocate nothing", [&] { checks.warm_calls_allocate_nothing(); });
+    return suite.take();
+}
+
+}  // namespace kolize

@@ -1,0 +1,66 @@
+#include "parts.h"
+
+#include <algorithm>
+
+namespace kolize {
+namespace {
+
+using namespace config;
+
+const std::vector<std::string> scene_tables = {"schema", "world",       "step",     "material", "shape", "body",
+                                               "room",   "broadphase", "narrowphase", "response", "render"};
+
+void require_known_tables(const toml::table& config) {
+    for (const auto& [key, node] : config) {
+        const std::string name(key.str());
+        if (std::find(scene_tables.begin(), scene_tables.end(), name) == scene_tables.end())
+            throw Error(location(key, node), "a scene has no table '" + name + "'" + hint(name, scene_tables));
+    }
+}
+
+void require_schema(const toml::table& file) {
+    const toml::node* schema = file.get("schema");
+    if (schema && schema->value<std::int64_t>() != 1)
+        throw Error(location(*schema), "schema " + describe(*schema) + " is not known; this program reads schema = 1");
+}
+
+Forces read_forces(const toml::table& config) {
+    TableReader reader(table(config, "world"), "[world]");
+    Forces forces;
+    forces.gravity = reader.vector("gravity", forces.gravity);
+    forces.wind = reader.vector("wind", forces.wind);
+    forces.drag = reader.number("drag", forces.drag, non_negative);
+    reader.finish();
+    return forces;
+}
+
+toml::table merged_config(const std::filesystem::path& file, const SceneOptions& options,
+                          const PluginLibrary& plugins) {
+    toml::table config = parse_file(file, "scene");
+    require_schema(config);
+    if (!options.pipeline.empty()) {
+        toml::table pipeline = parse_file(options.pipeline, "pipeline");
+        require_schema(pipeline);
+        merge_pipeline(config, std::move(pipeline));
+    }
+    apply_settings(config, options.set, options.defaults, plugins);
+    require_known_tables(config);
+    return config;
+}
+
+}  // namespace
+
+Scene load_scene(const std::filesystem::path& file, const SceneOptions& options, const PluginLibrary& plugins) {
+    const toml::table config = merged_config(file, options, plugins);
+    Scene scene;
+    scene.file = file.string();
+    scene.pipeline = read_pipeline(config, options.defaults);
+    scene.world.forces = read_forces(config);
+    const NameTable materials = read_materials(config, scene.world);
+    const NameTable shapes = read_shapes(config, scene.world);
+    read_bodies(config, shapes, materials, scene.world);
+    scene.rooms = read_rooms(config, materials);
+    return scene;
+}
+
+}  // namespace kolize

@@ -1,0 +1,40 @@
+// The parts of a scene, each read by a file of its own.
+#pragma once
+
+#include "table_reader.h"
+
+#include <map>
+
+namespace kolize::config {
+
+// [step], [broadphase], [narrowphase], [[response]].
+PipelineConfig read_pipeline(const toml::table& config, const PluginDefaults& defaults);
+StageConfig read_stage(const toml::table& table, const std::string& title, const std::string& default_plugin,
+                       const std::vector<std::string>& framework_keys);
+
+// Names to indices, with the place where each was given, so that a second one can point at the first.
+class NameTable {
+public:
+    explicit NameTable(std::string what) : what_(std::move(what)) {}
+
+    void add(const std::string& name, std::uint32_t index, const SourceLocation& where);
+    std::uint32_t find(const std::string& name, const SourceLocation& where) const;
+
+private:
+    struct Entry {
+        std::uint32_t index;
+        SourceLocation where;
+    };
+    std::string what_;  // "shape"
+    std::map<std::string, Entry> entries_;
+};
+
+// [[material]] and [[shape]], into world.materials and world.shapes. Material 0 is the default one.
+NameTable read_materials(const toml::table& config, World& world);
+NameTable read_shapes(const toml::table& config, World& world);
+
+// [[body]], with the rows of `from` tables.
+void read_bodies(const toml::table& config, const NameTable& shapes, const NameTable& materials, World& world);
+std::vector<Room> read_rooms(const toml::table& config, const NameTable& materials);
+
+}  // namespace kolize::config

@@ -1,0 +1,22 @@
+// Steppings: how the stages are called to get from one step to the next. Chosen by [step] mode.
+#pragma once
+
+#include "pipeline.h"
+
+namespace kolize {
+
+class Stepping {
+public:
+    virtual ~Stepping() = default;
+    virtual void step(Pipeline& pipeline, double dt) = 0;
+};
+
+// discrete   move everything, then answer the contacts found; bodies may overlap for some steps
+// rollback   the thesis's: whatever touches after the motion goes back to its last pose; at the end of a step nothing that was free
+//            overlaps. Positions put back do not conserve potential energy or angular momentum exactly.
+// bisection  the thesis's "optimised pseudo-dynamic": the first approaching contact of the step is found in time by halving,
+//            to tolerance * dt; the world goes on from there. What overlaps only in between is missed.
+// Throws std::invalid_argument for another mode.
+std::unique_ptr<Stepping> make_stepping(const StepConfig& config);
+
+}  // namespace kolize

@@ -1,0 +1,436 @@
+#include <kolize/scene.h>
+
+#include "framework/mesh_files.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+using namespace kolize;
+
+namespace {
+
+const PluginDefaults defaults{"grid", "moller", "impulse"};
+const PluginLibrary no_plugins({});
+using Set = std::vector<std::pair<std::string, std::string>>;
+
+// Files beside each other in a folder of their own; "DIR/" in messages stands for it.
+class SceneFolder {
+public:
+    SceneFolder& write(const std::string& name, const std::string& text) {
+        folder_.write(name, text);
+        return *this;
+    }
+    Scene load(const Set& set = {}, const std::string& pipeline = "") const {
+        const std::filesystem::path file = pipeline.empty() ? std::filesystem::path() : folder_.path() / pipeline;
+        return load_scene(folder_.path() / "scene.toml", {file, set, defaults}, no_plugins);
+    }
+    std::string complaint(const Set& set = {}, const std::string& pipeline = "") const {
+        try {
+            load(set, pipeline);
+        } catch (const Error& error) {
+            return shortened(error.what());
+        }
+        return "";
+    }
+
+private:
+    std::string shortened(std::string text) const {
+        const std::string prefix = folder_.path().string() + "/";
+        for (std::size_t at; (at = text.find(prefix)) != std::string::npos;) text.erase(at, prefix.size());
+        return text;
+    }
+    test::ScratchFolder folder_;
+};
+
+std::string complaint(const std::string& scene, const Set& set = {}) {
+    return SceneFolder().write("scene.toml", scene).complaint(set);
+}
+
+const std::string ball = "[[shape]]\nname = \"ball\"\nkind = \"sphere\"\nradius = 1\n";
+
+// A tetrahedron with its corner at the origin, outward.
+const std::string tetrahedron_vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+const std::string tetrahedron = tetrahedron_vertices + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+
+}  // namespace
+
+TEST_CASE("a complete scene is read as it is written", "[scene]") {
+    SceneFolder folder;
+    const std::string text = R"(
+schema = 1
+[world]
+gravity = [0, -9.81, 0]
+wind = [1, 2, 3]
+drag = 0.5
+[step]
+dt = 0.01
+mode = "bisection"
+integrator = "semi_implicit_euler"
+tolerance = 0.25
+max_impacts = 7
+time = 3
+[[material]]
+name = "rubber"
+restitution = 0.5
+friction = 0.25
+density = 900
+[[shape]]
+name = "ball"
+kind = "sphere"
+radius = 2
+[[shape]]
+name = "brick"
+kind = "box"
+half_extents = [1, 2, 3]
+[[shape]]
+name = "floor"
+kind = "half_space"
+normal = [0, 2, 0]
+offset = -1
+[[shape]]
+name = "tetra"
+kind = "mesh"
+file = "t.obj"
+scale = 6
+[[body]]
+name = "b"
+shape = "ball"
+material = "rubber"
+mass = 4
+kind = "missile"
+position = [1, 2, 3]
+orientation = [0, 1, 0, 0]
+velocity = [4, 5, 6]
+angular_velocity = [7, 8, 9]
+force = [1, 0, 0]
+torque = [0, 1, 0]
+[[body]]
+shape = "floor"
+static = true
+[[body]]
+shape = "tetra"
+density = 2
+[[room]]
+min = [-1, -2, -3]
+max = [1, 2, 3]
+thickness = 2.5
+open = ["+y", "-z"]
+material = "rubber"
+[broadphase]
+plugin = "sieve"
+cell_size = 2
+[narrowphase]
+plugin = "fine"
+contact = "averaged"
+exact = true
+walls = "box"
+[[response]]
+plugin = "explode"
+when = { kind = "missile" }
+[[response]]
+plugin = "impulse"
+when = { kinds = ["ball", "body"] }
+iterations = 10
+)";
+    const Scene scene = folder.write("t.obj", tetrahedron).write("scene.toml", text).load();
+    const World& world = scene.world;
+
+    CHECK(world.forces.gravity == Vec3(0, -9.81, 0));
+    CHECK(world.forces.wind == Vec3(1, 2, 3));
+    CHECK(world.forces.drag == 0.5);
+
+    const StepConfig& step = scene.pipeline.step;
+    CHECK(step.dt == 0.01);
+    CHECK(step.mode == "bisection");
+    CHECK(step.integrator == "semi_implicit_euler");
+    CHECK(step.tolerance == 0.25);
+    CHECK(step.max_impacts == 7);
+    CHECK(step.time == 3);
+
+    REQUIRE(world.shapes.size() == 4);
+    CHECK(world.shapes[0].radius == 2);
+    CHECK(world.shapes[1].half_extents == Vec3(1, 2, 3));
+    CHECK(world.shapes[2].normal == Vec3::UnitY());
+    CHECK(world.shapes[3].kind == ShapeKind::mesh);
+    CHECK(world.shapes[3].name == "tetra");
+    CHECK(world.shapes[3].volume == Approx(36));  // 6^3 / 6
+
+    REQUIRE(world.size() == 3);
+    CHECK(world.name[0] == "b");
+    CHECK(world.kinds[world.kind[0]] == "missile");
+    CHECK(world.materials[world.material[0]].name == "rubber");
+    CHECK(world.materials[world.material[0]].friction == 0.25);
+    CHECK(world.position[0] == Vec3(1, 2, 3));
+    CHECK(world.model_orientation(0).angularDistance(Quat(0, 1, 0, 0)) == Approx(0).margin(1e-12));
+    CHECK(world.velocity[0] == Vec3(4, 5, 6));
+    CHECK(world.angular_velocity[0] == Vec3(7, 8, 9));
+    CHECK(world.constant_force[0] == Vec3::UnitX());
+    CHECK(world.constant_torque[0] == Vec3::UnitY());
+    CHECK(world.inverse_mass[0] == 0.25);
+    CHECK(world.is_static[1] == 1);
+    CHECK(1 / world.inverse_mass[2] == Approx(72));
+    CHECK(world.model_position(2).norm() == Approx(0).margin(1e-12));
+
+    REQUIRE(scene.rooms.size() == 1);
+    CHECK(scene.rooms[0].min == Vec3(-1, -2, -3));
+    CHECK(scene.rooms[0].thickness == 2.5);
+    CHECK(scene.rooms[0].open == std::array<bool, 6>{false, false, false, true, true, false});
+    CHECK(world.materials[scene.rooms[0].material].name == "rubber");
+
+    CHECK(scene.pipeline.broadphase.plugin == "sieve");
+    CHECK(std::get<std::int64_t>(scene.pipeline.broadphase.settings.at("cell_size").value) == 2);
+    const auto lines_before = std::count(text.begin(), text.begin() + text.find("cell_size"), '\n');
+    CHECK(scene.pipeline.broadphase.settings.at("cell_size").where.line == lines_before + 1);
+    CHECK(scene.pipeline.narrowphase.settings.size() == 2);
+    CHECK(std::get<std::string>(scene.pipeline.narrowphase.settings.at("contact").value) == "averaged");
+    CHECK(std::get<bool>(scene.pipeline.narrowphase.settings.at("exact").value));
+    CHECK(scene.pipeline.walls == "box");
+    REQUIRE(scene.pipeline.responses.size() == 2);
+    CHECK(scene.pipeline.responses[0].kinds == std::vector<std::string>{"missile"});
+    CHECK(scene.pipeline.responses[1].kinds == std::vector<std::string>{"ball", "body"});
+    CHECK(scene.pipeline.responses[1].stage.settings.count("iterations") == 1);
+}
+
+TEST_CASE("a scene that says nothing is an empty world with the default plugins", "[scene]") {
+    const Scene scene = SceneFolder().write("scene.toml", "").load();
+    CHECK(scene.world.size() == 0);
+    CHECK(scene.pipeline.broadphase.plugin == "grid");
+    CHECK(scene.pipeline.narrowphase.plugin == "moller");
+    REQUIRE(scene.pipeline.responses.size() == 1);
+    CHECK(scene.pipeline.responses[0].stage.plugin == "impulse");
+}
+
+TEST_CASE("a pipeline file replaces whole tables of the scene", "[scene]") {
+    SceneFolder folder;
+    folder.write("scene.toml",
+                 "[step]\ndt = 0.5\ntime = 1\n[broadphase]\nplugin = \"a\"\nx = 1\n[narrowphase]\nplugin = \"n\"\n"
+                 "[[response]]\nplugin = \"r\"\n[[response]]\nplugin = \"s\"");
+    folder.write("p.toml", "[broadphase]\nplugin = \"b\"\ny = 2\n[[response]]\nplugin = \"t\"\n");
+    const PipelineConfig pipeline = folder.load({}, "p.toml").pipeline;
+    CHECK(pipeline.step.dt == 0.5);
+    CHECK(pipeline.broadphase.plugin == "b");
+    CHECK(pipeline.broadphase.settings.count("x") == 0);
+    CHECK(pipeline.broadphase.settings.count("y") == 1);
+    CHECK(pipeline.narrowphase.plugin == "n");
+    REQUIRE(pipeline.responses.size() == 1);
+    CHECK(pipeline.responses[0].stage.plugin == "t");
+
+    folder.write("p.toml", "[step]\ndt = 1\n[[body]]\nshape = \"s\"\n");
+    CHECK(folder.complaint({}, "p.toml") ==
+          "p.toml:3:3: a pipeline file has no table 'body'; it may hold [step], [broadphase], [narrowphase], "
+          "[[response]] and [render]");
+    CHECK(folder.complaint({}, "q.toml") == "pipeline file 'q.toml' does not exist");
+}
+
+TEST_CASE("--set overrides keys, reaches into lists and takes bare words as text", "[scene]") {
+    SceneFolder folder;
+    folder.write("scene.toml", "[[response]]\nplugin = \"a\"\n[[response]]\nplugin = \"b\"\n[step]\ndt = 1\n");
+    const Scene scene = folder.load({{"step.dt", "0.25"},
+                                     {"world.gravity", "[0, -1, 0]"},
+                                     {"broadphase.plugin", "bsp"},
+                                     {"broadphase.depth", "3"},
+                                     {"response.1.plugin", "\"c\""},
+                                     {"response.0.when.kind", "ball"}});
+    CHECK(scene.pipeline.step.dt == 0.25);
+    CHECK(scene.world.forces.gravity == Vec3(0, -1, 0));
+    CHECK(scene.pipeline.broadphase.plugin == "bsp");
+    CHECK(to_string(scene.pipeline.broadphase.settings.at("depth").where) == "--set broadphase.depth");
+    CHECK(scene.pipeline.responses[1].stage.plugin == "c");
+    CHECK(scene.pipeline.responses[0].kinds == std::vector<std::string>{"ball"});
+
+    CHECK(folder.complaint({{"response.plugin", "c"}}) ==
+          "--set response.plugin: there are 2 [[response]] tables; say which: response.0 to response.1");
+    CHECK(folder.complaint({{"response.2.plugin", "c"}}) ==
+          "--set response.2.plugin: there is no [[response]] table number 2; there are 2, counted from 0");
+    CHECK(folder.complaint({{"dt", "1"}}) == "--set dt: a dotted key such as broadphase.cell_size is wanted");
+    CHECK(folder.complaint({{"step.dt.x", "1"}}) == "--set step.dt.x: 'dt' is a value, not a table");
+    CHECK(folder.complaint({{"step.dt", "fast"}}) ==
+          "--set step.dt: dt must be a number, is the text \"fast\"");
+    CHECK(folder.complaint({{"step.tme", "1"}}) == "--set step.tme: no key 'tme' in [step]; did you mean 'time'?");
+}
+
+TEST_CASE("settings of a plugin that --set replaced are dropped where the new one has no such parameter", "[scene]") {
+    const PluginLibrary plugins({KOLIZE_PLUGIN_DIR});
+    const test::ScratchFolder scratch;
+    const auto file = scratch.write("scene.toml", "[broadphase]\nplugin = \"grid\"\ncell_size = 1.0\n"
+                                                  "[narrowphase]\nplugin = \"moller\"\ncontact = \"averaged\"\n");
+    const auto load = [&](const Set& set) { return load_scene(file, {{}, set, defaults}, plugins).pipeline; };
+    CHECK(load({}).broadphase.settings.count("cell_size") == 1);
+    CHECK(load({{"broadphase.plugin", "grid"}}).broadphase.settings.count("cell_size") == 1);
+    CHECK(load({{"broadphase.plugin", "brute_force"}}).broadphase.settings.count("cell_size") == 0);
+    CHECK(load({{"broadphase.plugin", "brute_force"}, {"broadphase.cell_size", "2"}})
+              .broadphase.settings.count("cell_size") == 1);
+    CHECK(load({{"narrowphase.plugin", "angle_sum"}}).narrowphase.settings.count("contact") == 1);
+}
+
+TEST_CASE("bodies take their states from a table with columns in any order", "[scene]") {
+    SceneFolder folder;
+    folder.write("scene.toml", ball + "[[body]]\nname = \"b\"\nshape = \"ball\"\nmass = 2\nfrom = \"s.csv\"\n");
+    folder.write("s.csv", "wz, y ,x,qw,qx,qy,qz\r\n1,2,3,0,0,1,0\r\n\r\n-1,-2,-3e0,1,0,0,0\r\n");
+    const World world = folder.load().world;
+    REQUIRE(world.size() == 2);
+    CHECK(world.position[0] == Vec3(3, 2, 0));
+    CHECK(world.angular_velocity[0] == Vec3(0, 0, 1));
+    CHECK(world.model_orientation(0).angularDistance(Quat(0, 0, 1, 0)) == Approx(0).margin(1e-12));
+    CHECK(world.velocity[0].isZero(0));
+    CHECK(world.inverse_mass[1] == 0.5);
+    CHECK(world.name[1] == "b.1");
+
+    folder.write("s.csv", "\xEF\xBB\xBFx,mass\n1,8\n");
+    CHECK(folder.load().world.inverse_mass[0] == 0.125);
+    CHECK(folder.load().world.model_orientation(0).w() == 1);
+}
+
+TEST_CASE("a broken table of states is refused at the cell", "[scene]") {
+    const auto [rows, sentence] = GENERATE(table<std::string, std::string>({
+        {"", "s.csv:1:1: the table is empty; its first line must name columns: x, y, z, qw, qx, qy, qz, vx, vy, vz, "
+             "wx, wy, wz, mass"},
+        {"x,mas\n", "s.csv:1:3: no column 'mas' in a table of states; did you mean 'mass'?"},
+        {"x,y,x\n", "s.csv:1:5: column 'x' stands there twice"},
+        {"x,y\n1\n", "s.csv:2:1: the row has 1 values for 2 columns"},
+        {"x,y\n1,2\n3,four\n", "s.csv:3:3: y must be a number, is \"four\""},
+        {"x,y\n1,\n", "s.csv:2:3: y must be a number, is \"\""},
+        {"x,y\n1,nan\n", "s.csv:2:3: y must be finite, is nan"},
+        {"x,mass\n1,-1\n", "s.csv:2:3: mass must be greater than 0"},
+        {"x,qw\n1,0\n", "s.csv:2:3: qw, qx, qy, qz is the zero quaternion; no turn at all is [1, 0, 0, 0]"},
+        {"qw,qx\n1,1\n",
+         "s.csv:2:1: qw, qx, qy, qz must be a unit quaternion [w, x, y, z], has length 1.414213562"},
+    }));
+    SceneFolder folder;
+    folder.write("scene.toml", ball + "[[body]]\nshape = \"ball\"\nfrom = \"s.csv\"\n").write("s.csv", rows);
+    CHECK(folder.complaint() == sentence);
+}
+
+TEST_CASE("what is wrong with a scene is said in one sentence with its place", "[scene]") {
+    const auto [text, sentence] = GENERATE(table<std::string, std::string>({
+        {"schema = 2", "scene.toml:1:10: schema 2 is not known; this program reads schema = 1"},
+        {"[wrold]", "scene.toml:1:2: a scene has no table 'wrold'; did you mean 'world'?"},
+        {"world = 1", "scene.toml:1:9: world must be a table, under [world]"},
+        {"[body]", "scene.toml:1:1: body must be a list of tables, each under [[body]]"},
+        {"[world]\ngravty = [0, 0, 0]", "scene.toml:2:1: no key 'gravty' in [world]; did you mean 'gravity'?"},
+        {"[world]\ngravity = -9.81", "scene.toml:2:11: gravity must be three numbers [x, y, z], is -9.81"},
+        {"[world]\ngravity = [0, 1]",
+         "scene.toml:2:11: gravity must be three numbers [x, y, z], has 2 entries"},
+        {"[world]\ngravity = [0, nan, 0]", "scene.toml:2:11: gravity must be finite, is nan"},
+        {"[world]\ndrag = -1", "scene.toml:2:8: drag must be at least 0, is -1"},
+        {"[step]\ndt = 0", "scene.toml:2:6: dt must be greater than 0, is 0"},
+        {"[step]\ndt = inf", "scene.toml:2:6: dt must be finite, is inf"},
+        {"[step]\ntolerance = 2", "scene.toml:2:13: tolerance must be greater than 0 and at most 1, is 2"},
+        {"[step]\nmax_impacts = 1.5", "scene.toml:2:15: max_impacts must be an integer, is 1.5"},
+        {"[step]\nmode = \"continuous\"",
+         "scene.toml:2:8: there is no mode 'continuous'; there are discrete, rollback, bisection"},
+        {"[step]\nmode = \"rolback\"", "scene.toml:2:8: there is no mode 'rolback'; did you mean 'rollback'?"},
+        {"[step]\nintegrator = \"pdmv5\"", "scene.toml:2:14: there is no integrator 'pdmv5'; did you mean 'pdmv4'?"},
+        {"[[material]]\nrestitution = 1", "scene.toml:1:1: [[material]] needs name"},
+        {"[[material]]\nname = \"m\"\nrestitution = 1.5",
+         "scene.toml:3:15: restitution must be from 0 to 1, is 1.5"},
+        {"[[material]]\nname = \"m\"\n[[material]]\nname = \"m\"",
+         "scene.toml:4:8: there is a material 'm' already, at scene.toml:2:8"},
+        {"[[shape]]\nname = \"s\"\nkind = \"sphere\"", "scene.toml:1:1: shape 's' needs radius"},
+        {"[[shape]]\nname = \"s\"\nkind = \"sphere\"\nradios = 1",
+         "scene.toml:4:1: no key 'radios' in shape 's'; did you mean 'radius'?"},
+        {"[[shape]]\nname = \"s\"\nkind = \"sphere\"\nradius = -1",
+         "scene.toml:4:10: radius must be greater than 0, is -1"},
+        {"[[shape]]\nname = \"s\"\nkind = \"capsule\"",
+         "scene.toml:3:8: shape kind 'capsule' is not there yet; there are sphere, box, half_space, mesh"},
+        {"[[shape]]\nname = \"s\"\nkind = \"spere\"",
+         "scene.toml:3:8: there is no kind 'spere'; did you mean 'sphere'?"},
+        {"[[shape]]\nname = \"s\"\nkind = \"box\"\nhalf_extents = [1, 0, 1]",
+         "scene.toml:4:16: half_extents must be greater than 0 on every axis"},
+        {"[[shape]]\nname = \"s\"\nkind = \"half_space\"\nnormal = [0, 0, 0]",
+         "scene.toml:4:10: normal must have a length that is not 0"},
+        {"[[shape]]\nname = \"s\"\nkind = \"mesh\"\nfile = \"no.obj\"",
+         "scene.toml:4:8: file 'no.obj' does not exist"},
+        {"[[body]]\nmass = 1", "scene.toml:1:1: [[body]] needs shape"},
+        {"[[body]]\nshape = \"ball\"", "scene.toml:2:9: there is no shape 'ball'; there is none"},
+        {"[[room]]\nmin = [0, 0, 0]", "scene.toml:1:1: [[room]] needs max"},
+        {"[[room]]\nmin = [0, 0, 0]\nmax = [1, 0, 1]",
+         "scene.toml:3:7: max must be greater than min on every axis"},
+        {"[[room]]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nopen = [\"y\"]",
+         "scene.toml:4:8: there is no side 'y'; there are -x, +x, -y, +y, -z, +z"},
+        {"[broadphase]\nplugin = 3", "scene.toml:2:10: plugin must be text, is 3"},
+        {"[broadphase]\nsizes = [1]", "scene.toml:2:9: sizes must be true, false, a number or text, is an array"},
+        {"[narrowphase]\nwalls = \"bricks\"",
+         "scene.toml:2:9: there is no walls 'bricks'; there are auto, half_space, box, mesh"},
+        {"[[response]]\nwhen = \"ball\"", "scene.toml:2:8: when must be a table such as { kind = \"ball\" }"},
+        {"[[response]]\nwhen = { kinds = [\"a\"] }",
+         "scene.toml:2:8: when must say either kind = \"...\" or kinds = [\"...\", \"...\"]"},
+    }));
+    CHECK(complaint(text) == sentence);
+}
+
+TEST_CASE("what is wrong with a body is said in one sentence with its place", "[scene]") {
+    const auto [text, sentence] = GENERATE(table<std::string, std::string>({
+        {"shape = \"bal\"", "scene.toml:6:9: there is no shape 'bal'; did you mean 'ball'?"},
+        {"shape = \"ball\"\nmaterial = \"ice\"", "scene.toml:7:12: there is no material 'ice'; there is none"},
+        {"shape = \"ball\"\nmass = 0", "scene.toml:7:8: mass must be greater than 0, is 0"},
+        {"shape = \"ball\"\nmass = 1\ndensity = 1",
+         "scene.toml:8:11: density cannot stand beside mass; give one of them"},
+        {"shape = \"ball\"\nstatic = 1", "scene.toml:7:10: static must be true or false, is 1"},
+        {"shape = \"ball\"\nvelocity = [0, inf, 0]", "scene.toml:7:12: velocity must be finite, is inf"},
+        {"shape = \"ball\"\norientation = [0, 0, 0, 0]",
+         "scene.toml:7:15: orientation is the zero quaternion; no turn at all is [1, 0, 0, 0]"},
+        {"shape = \"ball\"\norientation = [1, 1, 0, 0]",
+         "scene.toml:7:15: orientation must be a unit quaternion [w, x, y, z], has length 1.414213562"},
+        {"shape = \"ball\"\nfrom = \"s.csv\"", "scene.toml:7:8: file 's.csv' does not exist"},
+        {"shape = \"ball\"\nposition = [0, 0, 0]\nfrom = \"s.csv\"",
+         "scene.toml:7:12: position cannot stand beside from, whose table holds the states"},
+        {"name = \"b\"\nshape = \"ball\"\n[[body]]\nname = \"b\"\nshape = \"ball\"",
+         "scene.toml:9:8: there is a body 'b' already, at scene.toml:6:8"},
+        {"name = \"b\"\nshape = \"ball\"\nspin = 1",
+         "scene.toml:8:1: no key 'spin' in body 'b'; there are name, shape, material, kind, static, mass, density, "
+         "force, torque, from, position, orientation, velocity, angular_velocity"},
+    }));
+    CHECK(complaint(ball + "[[body]]\n" + text) == sentence);
+}
+
+TEST_CASE("an orientation that is nearly a unit quaternion is made one", "[scene]") {
+    SceneFolder folder;
+    folder.write("scene.toml", ball + "[[body]]\nshape = \"ball\"\norientation = [1.0005, 0, 0, 0]\n");
+    CHECK(folder.load().world.orientation[0].norm() == 1);
+}
+
+TEST_CASE("a mesh that bounds no solid is refused with its first defect", "[scene]") {
+    const std::string scene = "[[shape]]\nname = \"s\"\nkind = \"mesh\"\nfile = \"x.obj\"\n";
+    SceneFolder folder;
+    folder.write("scene.toml", scene);
+    const auto starts = [&](const std::string& faces, const std::string& sentence) {
+        const std::string said = folder.write("x.obj", tetrahedron_vertices + faces).complaint();
+        INFO(said);
+        CHECK(said.substr(0, sentence.size()) == sentence);
+    };
+    starts("f 1 3 2\nf 1 2 4\nf 2 3 4\n", "scene.toml:4:8: mesh 'x.obj' is open: edge ");
+    starts("f 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n", "scene.toml:4:8: mesh 'x.obj' is inside out: ");
+    starts("f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 3 4\n", "scene.toml:4:8: mesh 'x.obj' is not oriented: edge ");
+    starts("f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\nf 1 1 2\n", "scene.toml:4:8: mesh 'x.obj' is degenerate: ");
+}
+
+TEST_CASE("one mesh file at one scale is prepared once for all shapes that name it", "[scene]") {
+    const auto shape = [](const std::string& name, const std::string& scale) {
+        return "[[shape]]\nname = \"" + name + "\"\nkind = \"mesh\"\nfile = \"t.obj\"\nscale = " + scale + "\n";
+    };
+    SceneFolder folder;
+    folder.write("t.obj", tetrahedron).write("scene.toml", shape("a", "1") + shape("b", "1") + shape("c", "2"));
+    const World world = folder.load().world;
+    CHECK(world.shapes[0].mesh == world.shapes[1].mesh);
+    CHECK(world.shapes[0].mesh != world.shapes[2].mesh);
+    CHECK(world.shapes[1].name == "b");
+}
+
+TEST_CASE("a stage alone can be configured by settings", "[scene]") {
+    const StageConfig config =
+        stage_config(StageKind::narrowphase, {{"narrowphase.plugin", "fcl"}, {"narrowphase.depth", "2"}}, "moller");
+    CHECK(config.plugin == "fcl");
+    CHECK(std::get<std::int64_t>(config.settings.at("depth").value) == 2);
+    CHECK(stage_config(StageKind::response, {}, "impulse").plugin == "impulse");
+    CHECK_THROWS_WITH(stage_config(StageKind::narrowphase, {{"step.dt", "1"}}, "moller"),
+                      "--set step.dt: only narrowphase.* can be set here");
+}
+
+TEST_CASE("a time is taken in whole steps", "[scene]") {
+    CHECK(steps_in(1, 1.0 / 240) == 240);
+    CHECK(steps_in(0.1, 0.03) == 3);
+    CHECK(steps_in(0, 0.1) == 0);
+    CHECK_THROWS_AS(steps_in(1e9, 1e-9), Error);
+}
