@@ -161,6 +161,7 @@ void add_bench(CLI::App& app, int& exit_code) {
     const auto options = std::make_shared<BenchOptions>();
     CLI::App* bench = app.add_subcommand("bench", "Measure one stage alone on a recorded input");
     bench->require_subcommand(1);
+    bench->footer("Example: kolize bench broadphase boxes.csv");
     CLI::App* command = bench->add_subcommand("broadphase", "Find the overlapping pairs of moving boxes");
     command
         ->add_option("workload", options->workload,

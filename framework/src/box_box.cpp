@@ -91,13 +91,16 @@ ContactRegion face_contact(const OrientedBox& reference, int axis, const Oriente
         polygon = clip(polygon, -direction, reference.half[k] - middle);
     }
     const double plane = normal.dot(reference.center) + reference.half[axis];
-    polygon = clip(polygon, normal, plane);
+    Polygon below;
+    for (std::size_t i = 0; i < polygon.count; ++i)
+        if (normal.dot(polygon.points[i]) < plane) below.add(polygon.points[i]);
     ContactRegion region;
     std::array<std::uint32_t, 4> chosen;
-    for (const std::uint32_t i : spread_points({polygon.points.data(), polygon.count}, chosen)) {
-        region.points[region.count] = polygon.points[i];
-        region.depths[region.count++] = plane - normal.dot(polygon.points[i]);
+    for (const std::uint32_t i : spread_points({below.points.data(), below.count}, chosen)) {
+        region.points[region.count] = below.points[i];
+        region.depths[region.count++] = plane - normal.dot(below.points[i]);
     }
+    for (std::size_t i = 0; i < below.count; ++i) region.center += below.points[i] / static_cast<double>(below.count);
     return region;
 }
 
@@ -131,14 +134,12 @@ void box_box(const Vec3& half_a, const Mat3& rotation_a, const Vec3& half_b, con
     const bool on_a = face.a >= 0;
     ContactRegion region = on_a ? face_contact(first, face.a, second, face.normal)
                                 : face_contact(second, face.b, first, -face.normal);
-    if (region.count == 0) {  // rounding clipped all away: the boxes touch in a point at most
+    if (region.count == 0) {  // rounding left nothing below the face: the boxes touch in a point at most
         regions.push_back(ContactRegion::single(face.normal, 0.5 * b, face.depth));
         return;
     }
     region.normal = face.normal;
     region.depth = face.depth;
-    for (int i = 0; i < region.count; ++i) region.center += region.points[i];
-    region.center /= region.count;
     regions.push_back(region);
 }
 

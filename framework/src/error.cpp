@@ -8,8 +8,8 @@ namespace kolize {
 
 std::string to_string(const SourceLocation& where) {
     std::string text = where.file;
-    if (where.line > 0) text += ":" + std::to_string(where.line);
-    if (where.line > 0 && where.column > 0) text += ":" + std::to_string(where.column);
+    if (where.line > 0) text.append(":").append(std::to_string(where.line));
+    if (where.line > 0 && where.column > 0) text.append(":").append(std::to_string(where.column));
     return text;
 }
 

@@ -154,6 +154,7 @@ void mesh_half_space(const Mesh& mesh, const Vec3& normal, double offset, MeshSc
         for (std::uint32_t v = root; v < mesh.vertices.size(); ++v)
             if (scratch.parent[v] == root) {
                 scratch.points.push_back(mesh.vertices[v]);
+                region.center += mesh.vertices[v];
                 region.depth = std::max(region.depth, offset - normal.dot(mesh.vertices[v]));
             }
         region.normal = -normal;
@@ -161,9 +162,8 @@ void mesh_half_space(const Mesh& mesh, const Vec3& normal, double offset, MeshSc
         for (const std::uint32_t i : spread_points(scratch.points, chosen)) {
             region.depths[region.count] = offset - normal.dot(scratch.points[i]);
             region.points[region.count++] = scratch.points[i];
-            region.center += scratch.points[i];
         }
-        region.center /= region.count;
+        region.center /= static_cast<double>(scratch.points.size());
         regions.push_back(region);
     }
 }

@@ -53,6 +53,7 @@ Pipeline::Pipeline(const Scene& scene, const PluginLibrary& plugins, Host& host,
     use_bounding_spheres();
     narrowphase->prepare(world);
     number_rows();
+    reserve();
     measure.start(world, scene.rooms, expected_steps);
 }
 
@@ -132,6 +133,21 @@ void Pipeline::use_bounding_spheres() {
         }
         world.shape[body] = sphere;
     }
+}
+
+// Room for a dense crowd, so that a new record of contacts in a long run costs no allocation.
+void Pipeline::reserve() {
+    const std::size_t usual_pairs = 8 * world.size(), usual_contacts = 4 * usual_pairs;
+    for (auto* list : {&pairs, &found_, &routed_}) list->reserve(usual_pairs);
+    detail_.reserve(usual_pairs);
+    rule_.reserve(usual_pairs);
+    contacts.rows.reserve(usual_contacts);
+    for (Rule& rule : rules) {
+        rule.contacts.reserve(usual_contacts);
+        rule.rows.reserve(usual_contacts);
+        rule.hit.reserve(usual_contacts);
+    }
+    events.reserve(2 * world.size());
 }
 
 void Pipeline::number_rows() {

@@ -56,6 +56,7 @@ public:
 private:
     void negotiate(const PipelineConfig& config, const PluginLibrary& plugins);
     void use_bounding_spheres();
+    void reserve();
     void number_rows();
     void update_bounds();
     void find_pairs();

@@ -56,6 +56,7 @@ void box_half_space(const Vec3& half, const Mat3& rotation_a, const Vec3& normal
         const Vec3 p = rotation_a * sign.cwiseProduct(half);
         if (const double depth = plane - normal_b.dot(p); depth > 0) {
             inside[count++] = p;
+            region.center += p;
             region.depth = std::max(region.depth, depth);
         }
     }
@@ -65,9 +66,8 @@ void box_half_space(const Vec3& half, const Mat3& rotation_a, const Vec3& normal
     for (const std::uint32_t i : spread_points({inside.data(), count}, chosen)) {
         region.depths[region.count] = plane - normal_b.dot(inside[i]);
         region.points[region.count++] = inside[i];
-        region.center += inside[i];
     }
-    region.center /= region.count;
+    region.center /= static_cast<double>(count);
     regions.push_back(region);
 }
 

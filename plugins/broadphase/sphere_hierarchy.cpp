@@ -50,7 +50,7 @@ Sphere sphere_around(const Sphere& a, const Sphere& b) {
 
 // The left child of node n is node n + 1.
 struct Node {
-    Sphere sphere;
+    Sphere sphere = {};
     std::uint32_t right = 0;  // 0: a leaf
     std::uint32_t begin = 0, end = 0;
     bool is_static = false;  // every box of it

@@ -101,7 +101,7 @@ public:
 private:
     // Contacts are linked where they share a dynamic body: static ones pass nothing on.
     void find_islands(const ResponseInput& input, const World& world) {
-        slot_.resize(world.size(), none);
+        if (slot_.size() < world.size()) reserve(world.size());
         bodies_.clear();
         members_.clear();
         for (const Contact& c : input.contacts) unite(slot_of(c.a, world), slot_of(c.b, world));
@@ -111,6 +111,15 @@ private:
             if (slot != none) members_.push_back({root(slot), i});
         }
         std::sort(members_.begin(), members_.end());
+    }
+
+    // Once, for a crowd in which every body touches several others: later records cost no allocation.
+    void reserve(std::size_t world_size) {
+        slot_.resize(world_size, none);
+        bodies_.reserve(world_size);
+        members_.reserve(32 * world_size);
+        rows_.reserve(32 * world_size);
+        speeds_.reserve(32 * world_size);
     }
 
     std::uint32_t slot_of(std::uint32_t body, const World& world) {

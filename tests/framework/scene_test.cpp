@@ -223,7 +223,7 @@ TEST_CASE("a pipeline file replaces whole tables of the scene", "[scene]") {
     CHECK(folder.complaint({}, "q.toml") == "pipeline file 'q.toml' does not exist");
 }
 
-TEST_CASE("--set overrides keys, reaches into lists and takes bare words as text", "[scene]") {
+TEST_CASE("overrides by --set replace keys, reaches into lists and takes bare words as text", "[scene]") {
     SceneFolder folder;
     folder.write("scene.toml", "[[response]]\nplugin = \"a\"\n[[response]]\nplugin = \"b\"\n[step]\ndt = 1\n");
     const Scene scene = folder.load({{"step.dt", "0.25"},

@@ -67,4 +67,32 @@ inline double overlap_volume(std::vector<HalfSpace> a, const std::vector<HalfSpa
     return volume(a);
 }
 
+// Length of the part of the line p + t direction inside all half-spaces; negative where the line misses them.
+inline double chord(const std::vector<HalfSpace>& planes, const Vec3& direction, const Vec3& p) {
+    double from = -1e9, to = 1e9;
+    for (const HalfSpace& h : planes) {
+        const double slope = h.normal.dot(direction), gap = h.offset - h.normal.dot(p);
+        if (slope > 0) to = std::min(to, gap / slope);
+        if (slope < 0) from = std::max(from, gap / slope);
+    }
+    return to - from;
+}
+
+template <class Function>
+double maximum(Function&& f, double low, double high) {
+    for (int i = 0; i < 100; ++i) {
+        const double a = low + (high - low) / 3, b = high - (high - low) / 3;
+        (f(a) < f(b) ? low : high) = f(a) < f(b) ? a : b;
+    }
+    return f(0.5 * (low + high));
+}
+
+// The chord is a concave function of where the line stands, so two nested searches find the longest one.
+inline double longest_chord(const std::vector<HalfSpace>& planes, const Vec3& direction, const Vec3& start) {
+    const Vec3 u = direction.unitOrthogonal(), v = direction.cross(u);
+    return maximum(
+        [&](double x) { return maximum([&](double y) { return chord(planes, direction, start + x * u + y * v); }, -5, 5); },
+        -5, 5);
+}
+
 }  // namespace oracle

@@ -153,7 +153,9 @@ private:
     using Settings = std::map<std::string, Setting>;
 
     StagePtr<Broadphase> make(Host& host, const Settings& settings = {}) const {
-        return library_.make<Broadphase>({plugin_.descriptor->name, {}, settings}, host);
+        StageConfig config = default_config(plugin_);
+        config.settings = settings;
+        return library_.make<Broadphase>(config, host);
     }
 
     static std::vector<Pair> find(Broadphase& stage, const BoxScene& scene, std::uint64_t generation) {

@@ -92,27 +92,30 @@ public:
         });
     }
 
+    // Regions are compared: which four points of a region are taken may hang on the last digit.
     void turned_and_moved() const {
         std::mt19937_64 random(options_.seed + 1);
+        const Detail detail = std::min(gives(), Detail::normal);
         for_each_world([&](const World& world) {
             const Mat3 turn = random_rotation(random);
-            auto rows = find_pair(world, gives()).rows;
+            auto rows = find_pair(world, detail).rows;
             for (Contact& c : rows) {
                 c.normal = turn * c.normal;
                 c.arm_a = turn * c.arm_a;
                 c.arm_b = turn * c.arm_b;
             }
-            const auto moved = find_pair(placed_elsewhere(world, turn, Vec3(3, -2, 1)), gives()).rows;
+            const auto moved = find_pair(placed_elsewhere(world, turn, Vec3(3, -2, 1)), detail).rows;
             if (!same_geometry(rows, moved, tolerance)) violate("turning and moving the whole gives other contacts", world);
         });
     }
 
     // A million metres away a position has lost 1e-10 m; arms and normals may lose no more.
     void far_from_the_origin() const {
+        const Detail detail = std::min(gives(), Detail::normal);
         for_each_world([&](const World& world) {
-            const auto far = find_pair(placed_elsewhere(world, Mat3::Identity(), Vec3(1e6, -2e6, 3e6)), gives()).rows;
+            const auto far = find_pair(placed_elsewhere(world, Mat3::Identity(), Vec3(1e6, -2e6, 3e6)), detail).rows;
             if (reference_overlap(world) == Overlap::too_close_to_tell) return;
-            if (!same_geometry(find_pair(world, gives()).rows, far, 1e-6))
+            if (!same_geometry(find_pair(world, detail).rows, far, 1e-6))
                 violate("contacts change a million metres from the origin", world);
         });
     }
@@ -227,14 +230,14 @@ private:
     }
 
     StagePtr<Narrowphase> make(Host& host, const World& world) const {
-        auto stage = library_.make<Narrowphase>({plugin_.descriptor->name, {}, {}}, host);
+        auto stage = library_.make<Narrowphase>(default_config(plugin_), host);
         stage->prepare(world);
         return stage;
     }
 
     Detail gives() const {
         const auto host = make_host(1);
-        return library_.make<Narrowphase>({plugin_.descriptor->name, {}, {}}, *host)->gives();
+        return library_.make<Narrowphase>(default_config(plugin_), *host)->gives();
     }
 
     static Contacts find(Narrowphase& stage, const World& world, const std::vector<Pair>& pairs, Detail detail) {

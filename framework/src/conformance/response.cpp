@@ -190,7 +190,7 @@ public:
 
 private:
     StagePtr<Response> make(Host& host) const {
-        return library_.make<Response>({plugin_.descriptor->name, {}, {}}, host);
+        return library_.make<Response>(default_config(plugin_), host);
     }
 
     ImpactScene impacts(std::size_t count, double restitution, std::uint64_t seed) const {

@@ -19,6 +19,13 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+// The plugin with its default parameters.
+inline StageConfig default_config(const LoadedPlugin& plugin) {
+    StageConfig config;
+    config.plugin = plugin.descriptor->name;
+    return config;
+}
+
 class Suite {
 public:
     // Runs `check` and notes how it ended. Any exception but Inapplicable is a failure.

@@ -41,12 +41,19 @@ struct ContourSegment {
     std::uint32_t parent = 0;   // union-find; afterwards the first segment of the region
 };
 
+// The part of one mesh that lies inside the other behind one region of the curve.
+struct InnerPatch {
+    std::vector<std::uint32_t> triangles;  // the region's own first, then those wholly inside
+    std::vector<std::uint32_t> vertices;   // inside
+    std::vector<std::uint32_t> edges;      // of those triangles
+};
+
 struct ContourScratch {
     std::vector<ContourSegment> segments;
     std::vector<std::pair<std::uint64_t, std::uint32_t>> ends;  // (crossing key, segment)
     std::vector<Vec3> points;
-    std::vector<std::uint32_t> queue;
-    Marks vertices, triangles;
+    InnerPatch patch_a, patch_b;
+    Marks vertices, triangles, edges;
     Marks pierced_a, pierced_b;    // edges that go through a triangle of the other mesh
     Marks repeated_a, repeated_b;  // of them, those that go through more than one
 
@@ -57,9 +64,15 @@ struct ContourScratch {
 // exactly on an edge or vertex of the other mesh).
 // Normal: direction of the vector area sum 1/2 p x q of the oriented curve, which is the outward area of A's surface inside B
 // and the gradient of the overlap volume under translation (divergence theorem; Faure, Allard et al. 2008-2010).
-// Depth: extent of the overlap along the normal, from the inner patches of both surfaces.
+// Depth: see overlap_depth.
 void contour_regions(const MeshPair& pair, std::span<const TriangleHit> hits, ContourScratch& scratch,
                      std::vector<ContactRegion>& regions);
+
+// The longest chord of the overlap along the normal, between the inner patches of both surfaces. Its ends lie at a vertex
+// of one patch over a triangle of the other, or where two edges cross in the view along the normal. Exact where
+// each surface bounds the overlap from one side, an estimate in deep or pierced overlaps; of large patches only the vertices
+// that reach farthest are tried.
+double overlap_depth(const MeshPair& pair, std::uint32_t region, const Vec3& normal, ContourScratch& scratch);
 
 // The baseline of the source thesis: one contact whatever the number of places. Point: mean of the intersection points
 // that two triangle pairs found bitwise alike (of all points, if none was). Normal: mean of the triangle normals of the body with

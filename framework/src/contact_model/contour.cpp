@@ -173,52 +173,11 @@ bool measure_curve(const MeshPair& pair, std::span<const ContourSegment> segment
     return true;
 }
 
-// Largest value of direction . v over the vertices of one mesh inside the other that hang together with the region
-// (flood over edges that nothing pierces), and over the curve itself.
-double inner_reach(const MeshPair& pair, bool of_a, std::uint32_t region, const Vec3& direction, ContourScratch& s) {
-    const Mesh& mesh = of_a ? pair.a : pair.b;
-    const Marks &pierced = of_a ? s.pierced_a : s.pierced_b, &repeated = of_a ? s.repeated_a : s.repeated_b;
-    s.vertices.reset(mesh.vertices.size());
-    s.triangles.reset(mesh.triangles.size());
-    s.queue.clear();
-    double reach = -infinity;
-    const auto enter = [&](std::uint32_t v) {
-        if (s.vertices.test(v)) return;
-        s.vertices.set(v);
-        reach = std::max(reach, direction.dot(of_a ? mesh.vertices[v] : Vec3(pair.b_to_a * mesh.vertices[v])));
-    };
-    const auto visit = [&](std::uint32_t t) {
-        if (s.triangles.test(t)) return;
-        s.triangles.set(t);
-        s.queue.push_back(t);
-    };
-    for (const ContourSegment& segment : s.segments) {
-        if (segment.parent != region) continue;
-        visit(of_a ? segment.triangle_a : segment.triangle_b);
-        for (const Crossing* c : {&segment.from, &segment.to}) {
-            reach = std::max(reach, direction.dot(c->point));
-            // An edge that goes in and out again has no end inside.
-            if (c->edge_of_a == of_a && !repeated.test(c->edge)) enter(c->inner_vertex);
-        }
-    }
-    for (std::size_t i = 0; i < s.queue.size(); ++i)
-        for (const std::uint32_t e : mesh.triangle_edges[s.queue[i]]) {
-            const Edge& edge = mesh.edges[e];
-            if (pierced.test(e) || !(s.vertices.test(edge.v0) || s.vertices.test(edge.v1))) continue;
-            enter(edge.v0);
-            enter(edge.v1);
-            visit(edge.t0);
-            visit(edge.t1);
-        }
-    return reach;
-}
-
 ContactRegion make_region(const MeshPair& pair, std::uint32_t region, const Curve& curve, ContourScratch& scratch) {
     ContactRegion result;
     result.normal = curve.normal;
     result.center = curve.center;
-    result.depth = inner_reach(pair, true, region, curve.normal, scratch) +
-                   inner_reach(pair, false, region, -curve.normal, scratch);
+    result.depth = overlap_depth(pair, region, curve.normal, scratch);
     scratch.points.clear();
     for (const ContourSegment& s : scratch.segments)
         if (s.parent == region) scratch.points.push_back(s.from.point);
@@ -237,7 +196,11 @@ void ContourScratch::reserve() {
     segments.reserve(usual);
     ends.reserve(2 * usual);
     points.reserve(2 * usual);
-    queue.reserve(2 * usual);
+    for (InnerPatch* patch : {&patch_a, &patch_b}) {
+        patch->triangles.reserve(2 * usual);
+        patch->vertices.reserve(2 * usual);
+        patch->edges.reserve(4 * usual);
+    }
 }
 
 void contour_regions(const MeshPair& pair, std::span<const TriangleHit> hits, ContourScratch& scratch,
