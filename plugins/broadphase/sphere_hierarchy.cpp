@@ -2,7 +2,7 @@
 //
 // Source    Hubbard, Approximating polyhedra with spheres for time-critical collision detection (1996), 3;
 //           Ericson, Real-Time Collision Detection (2005), 6.2.1 top-down construction, 6.5.1 the union of two spheres.
-// Cost      O(N log N) to build and about O(N + pairs) to walk; 130 bytes a box. While boxes stay near their neighbours the
+// Cost      O(N log N) to build and about O(N + pairs) to walk; about 200 bytes a box. While boxes stay near their neighbours the
 //           tree of the last step is kept and only its spheres are made anew, in O(N).
 // Accuracy  Exact: spheres are rounded outward, and what they leave is tested box against box.
 // Choose it for bodies of very different sizes or uneven density; for similar ones `grid` is several times faster.
@@ -47,6 +47,11 @@ Sphere sphere_around(const Sphere& a, const Sphere& b) {
     const double radius = 0.5 * (distance + a.radius + b.radius);
     return {a.center + offset * ((radius - a.radius) / distance), radius};
 }
+
+Aabb united(const Aabb& a, const Aabb& b) { return {a.min.cwiseMin(b.min), a.max.cwiseMax(b.max)}; }
+
+// Of the sphere around two spheres and the one around a box, now one is tighter and now the other.
+const Sphere& smaller(const Sphere& a, const Sphere& b) { return a.radius < b.radius ? a : b; }
 
 // The left child of node n is node n + 1.
 struct Node {
@@ -114,23 +119,27 @@ private:
 
     // Children stand behind their parent: from the back, every sphere finds those it has to enclose.
     void fit_spheres() {
-        for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
-            if (node->right == 0) {
-                fit_leaf(*node);
+        extents_.resize(nodes_.size());
+        for (std::size_t n = nodes_.size(); n-- > 0;) {
+            Node& node = nodes_[n];
+            if (node.right == 0) {
+                fit_leaf(node, extents_[n]);
             } else {
-                const Node& left = *(&*node + 1);
-                const Node& right = nodes_[node->right];
-                node->sphere = sphere_around(left.sphere, right.sphere);
-                node->is_static = left.is_static && right.is_static;
+                const Node &left = nodes_[n + 1], &right = nodes_[node.right];
+                extents_[n] = united(extents_[n + 1], extents_[node.right]);
+                node.sphere = smaller(sphere_around(left.sphere, right.sphere), sphere_around(extents_[n]));
+                node.is_static = left.is_static && right.is_static;
             }
         }
     }
 
-    void fit_leaf(Node& leaf) const {
-        leaf.sphere = sphere_around(items_[leaf.begin].box);
+    void fit_leaf(Node& leaf, Aabb& extent) const {
+        extent = items_[leaf.begin].box;
+        leaf.sphere = sphere_around(extent);
         leaf.is_static = items_[leaf.begin].is_static;
         for (std::uint32_t i = leaf.begin + 1; i < leaf.end; ++i) {
-            leaf.sphere = sphere_around(leaf.sphere, sphere_around(items_[i].box));
+            extent = united(extent, items_[i].box);
+            leaf.sphere = smaller(sphere_around(leaf.sphere, sphere_around(items_[i].box)), sphere_around(extent));
             leaf.is_static = leaf.is_static && items_[i].is_static;
         }
     }
@@ -187,12 +196,13 @@ private:
     }
 
     int leaf_size_ = 2;
-    double rebuild_at_ = 1.1;
+    double rebuild_at_ = 1.03;
 
     std::uint64_t generation_ = 0;
     double built_radius_ = 0;  // m, the sum over all nodes when the tree was built
     std::vector<Item> items_;  // in the order of the leaves
     std::vector<Node> nodes_;
+    std::vector<Aabb> extents_;  // of all boxes below each node; only to find the smaller sphere
     std::vector<Pair>* pairs_ = nullptr;
 };
 
