@@ -94,7 +94,8 @@ bool print_table(const std::vector<Entry>& entries, std::size_t boxes) {
     for (const Entry& entry : entries) {
         const double median = quantile(entry.milliseconds, 0.5);
         std::printf("%-28s %12.3f %12.3f %22.2f%s\n", entry.contestant->name.c_str(), median,
-                    quantile(entry.milliseconds, 0.95), fastest_rival / median, entry.agrees ? "" : "   DIFFERENT PAIR COUNT");
+                    quantile(entry.milliseconds, 0.95), fastest_rival / median,
+                    entry.agrees ? "" : "   DIFFERENT PAIR COUNT");
         agree = agree && entry.agrees;
     }
     return agree;

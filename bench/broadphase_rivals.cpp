@@ -81,9 +81,7 @@ private:
         }
         std::vector<Pair>& pairs;
     };
-    static btDbvtVolume volume(const Aabb& box) {
-        return btDbvtVolume::FromMM(to_bullet(box.min), to_bullet(box.max));
-    }
+    static btDbvtVolume volume(const Aabb& box) { return btDbvtVolume::FromMM(to_bullet(box.min), to_bullet(box.max)); }
 
     btDbvt tree_;
     std::vector<btDbvtNode*> leaves_;
@@ -117,8 +115,8 @@ private:
         objects_[row]->computeAABB();
     }
     static bool collect(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* pairs) {
-        static_cast<std::vector<Pair>*>(pairs)->push_back(ordered(reinterpret_cast<std::size_t>(a->getUserData()),
-                                                                  reinterpret_cast<std::size_t>(b->getUserData())));
+        static_cast<std::vector<Pair>*>(pairs)->push_back(
+            ordered(reinterpret_cast<std::size_t>(a->getUserData()), reinterpret_cast<std::size_t>(b->getUserData())));
         return false;  // go on
     }
 

@@ -11,10 +11,10 @@ namespace bench {
 
 using Frame = std::vector<kolize::Aabb>;
 
-// Boxes of side 1 m in a cube of side (4 count)^(1/3) m, so that a box overlaps two others on average. From each frame to
-// the next each box moves by up to 5 % of its side in every axis, and never goes back on purpose: a library that keeps
-// boxes with a margin must not find them where they were. All coordinates are multiples of 2^-16 m: they are the same
-// numbers in float and in double, and as centre and half size, so that every library is asked the same question.
+// Boxes of side 1 m in a cube of side (4 count)^(1/3) m, so that a box overlaps two others on average. From each frame
+// to the next each box moves by up to 5 % of its side in every axis, and never goes back on purpose: a library that
+// keeps boxes with a margin must not find them where they were. All coordinates are multiples of 2^-16 m: they are the
+// same numbers in float and in double, and as centre and half size, so that every library is asked the same question.
 class MovingBoxes {
 public:
     MovingBoxes(std::size_t count, std::uint64_t seed);

@@ -13,10 +13,10 @@ constexpr int stations = 10, layers = 4, columns = 5;
 
 bool is_solid(int x, int y, int z) {
     const int outward = std::abs(z - 2);
-    if (outward == 0 && y <= 2) return true;                    // fuselage
-    if (outward == 0 && y == 3) return x <= 1 || x == 7;        // fin, canopy
+    if (outward == 0 && y <= 2) return true;                          // fuselage
+    if (outward == 0 && y == 3) return x <= 1 || x == 7;              // fin, canopy
     if (outward == 1 && y == 1) return x <= 1 || (x >= 3 && x <= 5);  // tailplane, inner wing
-    return outward == 2 && y == 1 && x >= 3 && x <= 5;          // outer wing
+    return outward == 2 && y == 1 && x >= 3 && x <= 5;                // outer wing
 }
 
 // Outline of the fuselage, m. Fin and tailplane reach behind its tail, to -98.5.

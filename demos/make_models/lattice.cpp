@@ -25,8 +25,8 @@ public:
     }
 
     bool is_solid(const Cell& c) const {
-        const bool within = c[0] >= 0 && c[1] >= 0 && c[2] >= 0 && c[0] < lattice_.nx && c[1] < lattice_.ny &&
-                            c[2] < lattice_.nz;
+        const bool within =
+            c[0] >= 0 && c[1] >= 0 && c[2] >= 0 && c[0] < lattice_.nx && c[1] < lattice_.ny && c[2] < lattice_.nz;
         return within && lattice_.is_solid(c[0], c[1], c[2]);
     }
 

@@ -14,9 +14,9 @@ namespace kolize::models {
 // that touch must share a side: then the surface is a closed two-manifold. Triangles are outward if `place` keeps the
 // handedness of the axes.
 struct Lattice {
-    int nx = 1, ny = 1, nz = 1;                       // cells
-    std::function<bool(int, int, int)> is_solid;      // asked for cells within the lattice only
-    std::function<Vec3(int, int, int)> place;         // of a lattice point: 0..nx, 0..ny, 0..nz
+    int nx = 1, ny = 1, nz = 1;                   // cells
+    std::function<bool(int, int, int)> is_solid;  // asked for cells within the lattice only
+    std::function<Vec3(int, int, int)> place;     // of a lattice point: 0..nx, 0..ny, 0..nz
 };
 TriangleSoup lattice_surface(const Lattice& lattice);
 

@@ -44,8 +44,8 @@ std::vector<Eigen::Vector2d> polygon(std::uint32_t n, double even_radius, double
 
 // A bar of 0.3 m square cells in the plane z = 0..0.3.
 TriangleSoup bar(int nx, int ny, std::function<bool(int, int, int)> is_solid) {
-    return lattice_surface({nx, ny, 1, std::move(is_solid),
-                            [](int i, int j, int k) { return Vec3(0.3 * i, 0.3 * j, 0.3 * k); }});
+    return lattice_surface(
+        {nx, ny, 1, std::move(is_solid), [](int i, int j, int k) { return Vec3(0.3 * i, 0.3 * j, 0.3 * k); }});
 }
 
 }  // namespace

@@ -47,8 +47,12 @@ std::vector<Variant> make_variants(const BenchOptions& options, const PluginLibr
         Settings all = fixed;
         all.insert(all.end(), varied.begin(), varied.end());
         const StageConfig config = stage_config(StageKind::broadphase, all, plugin_defaults().broadphase);
-        variants.push_back({varied, &library.require(StageKind::broadphase, config.plugin, config.where),
-                            library.make<Broadphase>(config, host), {}, {}, true});
+        variants.push_back({varied,
+                            &library.require(StageKind::broadphase, config.plugin, config.where),
+                            library.make<Broadphase>(config, host),
+                            {},
+                            {},
+                            true});
     }
     return variants;
 }
@@ -126,12 +130,8 @@ Json to_json(const Variant& variant) {
 }
 
 Json to_json(const BenchOptions& options, const BoxFrames& frames, const std::vector<Variant>& variants) {
-    Json json{{"stage", "broadphase"},
-              {"workload", options.workload},
-              {"frames", frames.size()},
-              {"boxes", frames.front().size()},
-              {"repeat", options.repeat},
-              {"threads", options.threads},
+    Json json{{"stage", "broadphase"},          {"workload", options.workload}, {"frames", frames.size()},
+              {"boxes", frames.front().size()}, {"repeat", options.repeat},     {"threads", options.threads},
               {"variants", Json::array()}};
     for (const Variant& variant : variants) json["variants"].push_back(to_json(variant));
     json["host"] = host_block();
@@ -176,8 +176,9 @@ void add_bench(CLI::App& app, int& exit_code) {
     add_threads_option(*command, options->threads);
     add_plugin_path_option(*command, options->plugin_path);
     add_json_option(*command, options->json);
-    command->footer("Without a choice of broadphase.plugin all that are found are compared.\n"
-                    "Example: kolize bench broadphase boxes.csv --vary broadphase.plugin=grid,bsp --json -");
+    command->footer(
+        "Without a choice of broadphase.plugin all that are found are compared.\n"
+        "Example: kolize bench broadphase boxes.csv --vary broadphase.plugin=grid,bsp --json -");
     command->callback([options, &exit_code] { exit_code = bench_broadphase(*options); });
 }
 

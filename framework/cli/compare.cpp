@@ -99,8 +99,8 @@ Json variant_json(const Variant& variant) {
 Json comparison_json(const std::vector<Variant>& variants, const CompareOptions& options) {
     Json rows = Json::array();
     for (const Variant& variant : variants) rows.push_back(variant_json(variant));
-    return {{"scene", options.scene},      {"repeat", options.repeat}, {"order_seed", order_seed}, {"variants", rows},
-            {"host", host_block()}, {"command", command_line()}};
+    return {{"scene", options.scene}, {"repeat", options.repeat}, {"order_seed", order_seed},
+            {"variants", rows},       {"host", host_block()},     {"command", command_line()}};
 }
 
 std::string quoted(const std::string& text) {
@@ -118,13 +118,12 @@ std::string csv_report(const std::vector<Variant>& variants) {
            "angular_momentum_drift,max_penetration_m,escaped,stuck,state_hash,repeatable,front\n";
     for (const Variant& variant : variants) {
         const RunResult& r = variant.summary;
-        out << quoted(variant.label) << ',' << r.bodies << ',' << r.steps << ',' << r.dt << ','
-            << r.step.median_us << ',' << r.step.p95_us << ',' << r.integrate.median_us << ','
-            << r.broadphase.median_us << ',' << r.narrowphase.median_us << ',' << r.response.median_us << ','
-            << r.pairs << ',' << r.contacts << ','
-            << r.triangle_tests << ',' << r.energy_drift << ',' << r.momentum_drift << ','
-            << r.angular_momentum_drift << ',' << r.max_penetration_m << ',' << r.escaped << ','
-            << r.stuck << ',' << hex(r.state_hash) << ',' << variant.repeatable << ',' << variant.front << '\n';
+        out << quoted(variant.label) << ',' << r.bodies << ',' << r.steps << ',' << r.dt << ',' << r.step.median_us
+            << ',' << r.step.p95_us << ',' << r.integrate.median_us << ',' << r.broadphase.median_us << ','
+            << r.narrowphase.median_us << ',' << r.response.median_us << ',' << r.pairs << ',' << r.contacts << ','
+            << r.triangle_tests << ',' << r.energy_drift << ',' << r.momentum_drift << ',' << r.angular_momentum_drift
+            << ',' << r.max_penetration_m << ',' << r.escaped << ',' << r.stuck << ',' << hex(r.state_hash) << ','
+            << variant.repeatable << ',' << variant.front << '\n';
     }
     return out.str();
 }
@@ -140,8 +139,7 @@ void write_report(const std::filesystem::path& folder, const std::string& text, 
 }
 
 int compare(const CompareOptions& options) {
-    const PluginLibrary plugins =
-        open_plugins(options.plugin_path, std::filesystem::path(options.scene).parent_path());
+    const PluginLibrary plugins = open_plugins(options.plugin_path, std::filesystem::path(options.scene).parent_path());
     const std::unique_ptr<Host> host = make_host(options.threads);
     std::vector<Variant> variants = make_variants(options, plugins);
     warm_up(variants, plugins, *host);
@@ -175,8 +173,9 @@ void add_compare(CLI::App& app, int& exit_code) {
     add_plugin_path_option(*command, options->plugin_path);
     command->add_option("--report", options->report, "Write compare.txt, compare.csv and compare.json to this folder");
     add_json_option(*command, options->json);
-    command->footer("Example: kolize compare scene.toml --vary broadphase.plugin=grid,brute_force --vary "
-                    "step.dt=0.004,0.002 --repeat 5 --report out");
+    command->footer(
+        "Example: kolize compare scene.toml --vary broadphase.plugin=grid,brute_force --vary "
+        "step.dt=0.004,0.002 --repeat 5 --report out");
     command->callback([options, &exit_code] { exit_code = compare(*options); });
 }
 

@@ -31,9 +31,9 @@ RunResult summarize(const std::vector<RunResult>& runs) {
 // All that a run gave and that no clock has to do with. Bits, so that NaN equals itself.
 auto outcome(const RunResult& run) {
     const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
-    return std::tuple(run.pairs, run.contacts, run.triangle_tests, run.events, run.unresolved,
-                      bits(run.energy_drift), bits(run.momentum_drift), bits(run.angular_momentum_drift),
-                      bits(run.max_penetration_m), run.escaped, run.stuck, run.state_hash);
+    return std::tuple(run.pairs, run.contacts, run.triangle_tests, run.events, run.unresolved, bits(run.energy_drift),
+                      bits(run.momentum_drift), bits(run.angular_momentum_drift), bits(run.max_penetration_m),
+                      run.escaped, run.stuck, run.state_hash);
 }
 
 bool same_outcome(const std::vector<RunResult>& runs) {

@@ -104,12 +104,9 @@ Json to_json(const RunResult& result, const Json& pipeline) {
 }
 
 Json host_block() {
-    return {{"version", KOLIZE_VERSION},
-            {"plugin_api", plugin_api},
-            {"compiler", compiler()},
-            {"build_type", KOLIZE_BUILD_TYPE},
-            {"cpu", cpu_model()},
-            {"cores", std::thread::hardware_concurrency()}};
+    return {{"version", KOLIZE_VERSION}, {"plugin_api", plugin_api},
+            {"compiler", compiler()},    {"build_type", KOLIZE_BUILD_TYPE},
+            {"cpu", cpu_model()},        {"cores", std::thread::hardware_concurrency()}};
 }
 
 std::string command_line() {

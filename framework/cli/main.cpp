@@ -38,8 +38,9 @@ int main(int argc, char** argv) {
     app.set_version_flag("--version",
                          "kolize " KOLIZE_VERSION " (plugin API " + std::to_string(kolize::plugin_api) + ")");
     app.require_subcommand(1);
-    app.footer("Example: kolize run scene.toml --set broadphase.plugin=brute_force\n"
-               "Exit codes: 0 fine, 1 a run failed or broke an expectation, 2 bad input or usage.");
+    app.footer(
+        "Example: kolize run scene.toml --set broadphase.plugin=brute_force\n"
+        "Exit codes: 0 fine, 1 a run failed or broke an expectation, 2 bad input or usage.");
     int exit_code = fine;
     kolize::cli::add_run(app, exit_code);
     kolize::cli::add_compare(app, exit_code);

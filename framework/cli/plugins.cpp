@@ -30,9 +30,8 @@ Json capabilities_json(const PluginDescriptor& plugin) {
     if (plugin.stage == StageKind::narrowphase)
         return {{"gives", to_string(can.gives)}, {"shapes", shape_kind_names(can.shape_kinds)}};
     if (plugin.stage == StageKind::response)
-        return {{"needs", to_string(can.needs)},
-                {"uses", to_string(can.uses)},
-                {"bounding_spheres", can.bounding_spheres}};
+        return {
+            {"needs", to_string(can.needs)}, {"uses", to_string(can.uses)}, {"bounding_spheres", can.bounding_spheres}};
     return Json::object();
 }
 

@@ -37,10 +37,10 @@ void print_result(const RunResult& result) {
     std::cout << "\npairs " << result.pairs << ", contacts " << result.contacts << ", triangle tests "
               << result.triangle_tests << ", events " << result.events << ", unresolved " << result.unresolved
               << "\nenergy " << number(result.energy_initial_J, 6) << " J to " << number(result.energy_final_J, 6)
-              << " J, drift of energy " << number(result.energy_drift) << ", momentum "
-              << number(result.momentum_drift) << ", angular momentum " << number(result.angular_momentum_drift)
-              << "\ndeepest penetration " << number(result.max_penetration_m) << " m, escaped " << result.escaped
-              << ", stuck " << result.stuck << "\nstate hash " << hex(result.state_hash) << '\n';
+              << " J, drift of energy " << number(result.energy_drift) << ", momentum " << number(result.momentum_drift)
+              << ", angular momentum " << number(result.angular_momentum_drift) << "\ndeepest penetration "
+              << number(result.max_penetration_m) << " m, escaped " << result.escaped << ", stuck " << result.stuck
+              << "\nstate hash " << hex(result.state_hash) << '\n';
 }
 
 int run_scene(const RunOptions& options, const PluginLibrary& plugins, Host& host) {
@@ -80,8 +80,7 @@ int run_expectations(const RunOptions& options, const PluginLibrary& plugins, Ho
 }
 
 int run(const RunOptions& options) {
-    const PluginLibrary plugins =
-        open_plugins(options.plugin_path, std::filesystem::path(options.scene).parent_path());
+    const PluginLibrary plugins = open_plugins(options.plugin_path, std::filesystem::path(options.scene).parent_path());
     const std::unique_ptr<Host> host = make_host(options.threads);
     return options.expect.empty() ? run_scene(options, plugins, *host) : run_expectations(options, plugins, *host);
 }

@@ -75,7 +75,8 @@ Polygon incident_face(const OrientedBox& box, const Vec3& normal) {
     const Vec3 middle = box.center + side * box.half[axis] * box.axes.col(axis);
     const Vec3 du = box.half[u] * box.axes.col(u), dv = box.half[v] * box.axes.col(v);
     Polygon face;
-    for (const Vec3& p : {Vec3(middle + du + dv), Vec3(middle - du + dv), Vec3(middle - du - dv), Vec3(middle + du - dv)})
+    for (const Vec3& p :
+         {Vec3(middle + du + dv), Vec3(middle - du + dv), Vec3(middle - du - dv), Vec3(middle + du - dv)})
         face.add(p);
     return face;
 }
@@ -126,14 +127,14 @@ void box_box(const Vec3& half_a, const Mat3& rotation_a, const Vec3& half_b, con
     const OrientedBox first{half_a, rotation_a, Vec3::Zero()}, second{half_b, rotation_b, b};
     Axis face, edge;
     if (!least_overlap(first, second, face, edge)) return;
-    // An edge axis must beat the faces by 1 %: otherwise a face contact, which has more points, describes the same overlap.
+    // An edge axis must beat the faces by 1 %: a face contact has more points and describes the same overlap.
     if (edge.depth < 0.99 * face.depth) {
         regions.push_back(ContactRegion::single(edge.normal, edge_contact(first, second, edge), edge.depth));
         return;
     }
     const bool on_a = face.a >= 0;
-    ContactRegion region = on_a ? face_contact(first, face.a, second, face.normal)
-                                : face_contact(second, face.b, first, -face.normal);
+    ContactRegion region =
+        on_a ? face_contact(first, face.a, second, face.normal) : face_contact(second, face.b, first, -face.normal);
     if (region.count == 0) {  // rounding left nothing below the face: the boxes touch in a point at most
         regions.push_back(ContactRegion::single(face.normal, 0.5 * b, face.depth));
         return;

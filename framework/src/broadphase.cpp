@@ -19,8 +19,8 @@ bool is_valid(const Aabb& box) {
 [[noreturn]] void refuse(std::size_t row, const Aabb& box) {
     const Eigen::IOFormat list(Eigen::FullPrecision, Eigen::DontAlignCols, ", ", ", ", "", "", "(", ")");
     std::ostringstream text;
-    text << "the box of row " << row << (box.finite() ? " is inverted" : " is not finite")
-         << ": min " << box.min.format(list) << ", max " << box.max.format(list);
+    text << "the box of row " << row << (box.finite() ? " is inverted" : " is not finite") << ": min "
+         << box.min.format(list) << ", max " << box.max.format(list);
     throw std::invalid_argument(text.str());
 }
 

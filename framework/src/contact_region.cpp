@@ -49,7 +49,9 @@ std::span<const std::uint32_t> spread_points(std::span<const Vec3> points, std::
     const Vec3& p0 = points[chosen[0]];
     chosen[1] = best_index(n, [&](auto i) { return (points[i] - p0).squaredNorm(); });
     const Vec3 line = points[chosen[1]] - p0;
-    const auto offset = [&](auto i) -> Vec3 { return line.cross(points[i] - p0); };  // grows with the distance from the line
+    const auto offset = [&](auto i) -> Vec3 {
+        return line.cross(points[i] - p0);
+    };  // grows with the distance from the line
     chosen[2] = best_index(n, [&](auto i) { return offset(i).squaredNorm(); });
     const Vec3 side = offset(chosen[2]);
     chosen[3] = best_index(n, [&](auto i) { return -side.dot(offset(i)); });

@@ -110,9 +110,8 @@ class Pdmv4 final : public Integrator {
 }  // namespace
 
 void Integrator::advance(World& world, double dt, Host& host) const {
-    host.parallel_for(world.size(), bodies_per_chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-        advance_bodies(world, begin, end, dt);
-    });
+    host.parallel_for(world.size(), bodies_per_chunk,
+                      [&](std::size_t, std::size_t begin, std::size_t end) { advance_bodies(world, begin, end, dt); });
 }
 
 std::unique_ptr<Integrator> make_integrator(const std::string& name) {

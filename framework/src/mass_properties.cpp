@@ -8,9 +8,9 @@ namespace {
 
 // Integrals over the tetrahedra that the triangles span with a reference point, as multiples of their common factor.
 struct Moments {
-    double volume = 0;            // 6 V
-    Vec3 first = Vec3::Zero();    // 24 times the integral of p
-    Mat3 second = Mat3::Zero();   // 120 times the integral of p p^T
+    double volume = 0;           // 6 V
+    Vec3 first = Vec3::Zero();   // 24 times the integral of p
+    Mat3 second = Mat3::Zero();  // 120 times the integral of p p^T
 
     void add(const Vec3& p, const Vec3& q, const Vec3& r) {
         const double d = p.dot(q.cross(r));

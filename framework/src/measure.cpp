@@ -121,7 +121,7 @@ void Measure::after_motion(const World& world, double dt) {
     } else if (has_forces_) {
         for_live(world, [&](std::uint32_t body) {
             const Vec3 impulse = force_on(world, body) * dt;
-            // Along a parabola the mean of both ends is off by a multiple of the force, which has no moment about itself.
+            // Along a parabola the mean of both ends is off by a multiple of the force: no moment about itself.
             const Vec3 arm = 0.5 * (start_position_[body] + world.position[body]) - reference_;
             exchange_.impulse += impulse;
             exchange_.angular_impulse += arm.cross(impulse);

@@ -28,8 +28,8 @@ private:
 
 // Sums over the dynamic bodies that are still there.
 struct Totals {
-    double kinetic = 0;               // J
-    double potential = 0;             // J, of gravity and constant forces, from the reference point
+    double kinetic = 0;                    // J
+    double potential = 0;                  // J, of gravity and constant forces, from the reference point
     Vec3 momentum = Vec3::Zero();          // N s
     Vec3 angular_momentum = Vec3::Zero();  // N m s, about the reference point
     double energy() const { return kinetic + potential; }

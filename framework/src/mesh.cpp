@@ -193,8 +193,8 @@ std::shared_ptr<const Mesh> build_mesh(const TriangleSoup& soup) {
 TriangleSoup box_soup(const Vec3& half_extents) {
     TriangleSoup soup;
     for (int corner = 0; corner < 8; ++corner)
-        soup.vertices.push_back(Vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1)
-                                    .cwiseProduct(half_extents));
+        soup.vertices.push_back(
+            Vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1).cwiseProduct(half_extents));
     soup.triangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5},   // -x, +x
                       {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3},   // -y, +y
                       {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};  // -z, +z

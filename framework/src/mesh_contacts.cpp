@@ -90,8 +90,8 @@ void mesh_sphere(const Mesh& mesh, const Vec3& center, double radius, MeshScratc
     auto& all = scratch.candidates;
     collect_near(mesh, center, radius, all);
     if (all.empty()) return;
-    const auto nearest = std::min_element(
-        all.begin(), all.end(), [](const auto& x, const auto& y) { return x.distance < y.distance; });
+    const auto nearest =
+        std::min_element(all.begin(), all.end(), [](const auto& x, const auto& y) { return x.distance < y.distance; });
     const auto group_at = [&](std::size_t begin) {
         std::size_t end = begin + 1;
         while (end < all.size() && all[end].feature == all[begin].feature && all[end].id == all[begin].id) ++end;

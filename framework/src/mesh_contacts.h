@@ -15,7 +15,7 @@ struct SurfacePoint {
     Vec3 point;
     double distance = 0;  // m
     Feature feature = Feature::face;
-    std::uint32_t id = 0;        // of the triangle, edge or vertex
+    std::uint32_t id = 0;  // of the triangle, edge or vertex
     std::uint32_t triangle = 0;
 };
 

@@ -85,8 +85,7 @@ private:
         const auto rotation = [&](std::uint32_t body) { return world_.orientation[body].toRotationMatrix(); };
         Regions& regions = work_.regions;
         switch (second.kind) {
-        case ShapeKind::sphere:
-            return sphere_sphere(first.radius, second.radius, offset, regions);
+        case ShapeKind::sphere: return sphere_sphere(first.radius, second.radius, offset, regions);
         case ShapeKind::box:
             if (first.kind == ShapeKind::sphere)
                 return sphere_box(first.radius, second.half_extents, rotation(b), offset, regions);

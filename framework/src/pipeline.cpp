@@ -9,14 +9,6 @@ namespace kolize {
 
 namespace {
 
-constexpr std::uint32_t no_rule = ~0u;
-
-bool fits(const std::vector<std::string>& wanted, const std::string& a, const std::string& b) {
-    if (wanted.empty()) return true;
-    if (wanted.size() == 1) return a == wanted[0] || b == wanted[0];
-    return (a == wanted[0] && b == wanted[1]) || (a == wanted[1] && b == wanted[0]);
-}
-
 std::uint8_t hit_bits(const std::vector<std::string>& wanted, const std::string& a, const std::string& b) {
     const auto named = [&](const std::string& kind) {
         return wanted.empty() || std::find(wanted.begin(), wanted.end(), kind) != wanted.end();
@@ -30,8 +22,8 @@ std::string pair_text(const Pair& pair) { return std::to_string(pair.a) + " and 
 
 Pipeline::Pipeline(const Scene& scene, const PluginLibrary& plugins, Host& host, std::uint64_t expected_steps)
     : world(scene.world),
-      broadphase_plugin(&plugins.require(StageKind::broadphase, scene.pipeline.broadphase.plugin,
-                                         scene.pipeline.broadphase.where)),
+      broadphase_plugin(
+          &plugins.require(StageKind::broadphase, scene.pipeline.broadphase.plugin, scene.pipeline.broadphase.where)),
       narrowphase_plugin(&plugins.require(StageKind::narrowphase, scene.pipeline.narrowphase.plugin,
                                           scene.pipeline.narrowphase.where)),
       broadphase(plugins.make<Broadphase>(scene.pipeline.broadphase, host)),
@@ -40,7 +32,12 @@ Pipeline::Pipeline(const Scene& scene, const PluginLibrary& plugins, Host& host,
       integrator_(make_integrator(scene.pipeline.step.integrator)) {
     for (const ResponseRule& rule : scene.pipeline.responses)
         rules.push_back({&plugins.require(StageKind::response, rule.stage.plugin, rule.stage.where),
-                         plugins.make<Response>(rule.stage, host), rule.kinds, Detail::overlap, {}, {}, {}});
+                         plugins.make<Response>(rule.stage, host),
+                         rule.kinds,
+                         Detail::overlap,
+                         {},
+                         {},
+                         {}});
     try {
         walls = wall_kind(scene.pipeline.walls, narrowphase_plugin->descriptor->capabilities.shape_kinds);
     } catch (const std::invalid_argument& e) {
@@ -55,84 +52,6 @@ Pipeline::Pipeline(const Scene& scene, const PluginLibrary& plugins, Host& host,
     number_rows();
     reserve();
     measure.start(world, scene.rooms, expected_steps);
-}
-
-// ---------------------------------------------------------------------------------------------- before step 0
-
-namespace {
-
-std::string names_that(const PluginLibrary& plugins, StageKind stage, bool (*would_do)(const Capabilities&, std::uint32_t),
-                       std::uint32_t argument) {
-    std::string names;
-    for (const LoadedPlugin& plugin : plugins.plugins())
-        if (plugin.descriptor->stage == stage && would_do(plugin.descriptor->capabilities, argument))
-            names += (names.empty() ? "" : ", ") + std::string(plugin.descriptor->name);
-    return names.empty() ? "no plugin found does" : "these would do: " + names;
-}
-
-}  // namespace
-
-void Pipeline::negotiate(const PipelineConfig& config, const PluginLibrary& plugins) {
-    const Capabilities& narrow = narrowphase_plugin->descriptor->capabilities;
-    const std::string who = "narrowphase '" + config.narrowphase.plugin + "'";
-    for (std::uint32_t body = 0; body < world.size(); ++body) {
-        const ShapeKind kind = world.shape_of(body).kind;
-        if (!(narrow.shape_kinds & bit(kind)))
-            throw Error(config.narrowphase.where,
-                        who + " does not take shapes of kind " + to_string(kind) + " (body '" + world.name[body] + "'); " +
-                            names_that(plugins, StageKind::narrowphase,
-                                       [](const Capabilities& c, std::uint32_t wanted) { return (c.shape_kinds & wanted) != 0; },
-                                       bit(kind)));
-    }
-    for (std::size_t i = 0; i < rules.size(); ++i) {
-        const Capabilities& response = rules[i].plugin->descriptor->capabilities;
-        const Detail given = narrowphase->gives();
-        if (given < response.needs)
-            throw Error(config.responses[i].stage.where,
-                        "response '" + config.responses[i].stage.plugin + "' needs " + to_string(response.needs) + ", but " +
-                            who + " as configured gives only " + to_string(given) + "; " +
-                            names_that(plugins, StageKind::narrowphase,
-                                       [](const Capabilities& c, std::uint32_t needed) { return c.gives >= Detail(needed); },
-                                       static_cast<std::uint32_t>(response.needs)));
-        rules[i].detail = std::min(given, response.uses);
-    }
-    const std::size_t kinds = world.kinds.size();
-    rule_of_kinds_.assign(kinds * kinds, no_rule);
-    for (std::size_t a = 0; a < kinds; ++a)
-        for (std::size_t b = 0; b < kinds; ++b)
-            for (std::uint32_t r = static_cast<std::uint32_t>(rules.size()); r-- > 0;)
-                if (fits(rules[r].kinds, world.kinds[a], world.kinds[b])) rule_of_kinds_[a * kinds + b] = r;
-}
-
-// A dynamic body is replaced by its bounding sphere when every rule that can take it asks for no more: its triangles
-// are then never looked at.
-void Pipeline::use_bounding_spheres() {
-    const std::size_t kinds = world.kinds.size();
-    std::vector<std::uint8_t> kind_in_use(kinds, 0);
-    for (const std::uint32_t kind : world.kind) kind_in_use[kind] = 1;
-    std::vector<std::uint32_t> sphere_of(world.shapes.size(), no_rule);
-    for (std::uint32_t body = 0; body < world.size(); ++body) {
-        const Shape shape = world.shape_of(body);
-        if (world.is_static[body] || shape.kind == ShapeKind::sphere) continue;
-        bool spheres_do = false, more_needed = false;
-        for (std::size_t other = 0; other < kinds; ++other) {
-            const std::uint32_t rule = rule_of_kinds_[world.kind[body] * kinds + other];
-            if (!kind_in_use[other] || rule == no_rule) continue;
-            (rules[rule].plugin->descriptor->capabilities.bounding_spheres ? spheres_do : more_needed) = true;
-        }
-        if (!spheres_do || more_needed) continue;
-        std::uint32_t& sphere = sphere_of[world.shape[body]];
-        if (sphere == no_rule) {
-            sphere = static_cast<std::uint32_t>(world.shapes.size());
-            Shape bounding = make_sphere(shape.name, shape.radius);
-            bounding.volume = shape.volume;
-            bounding.moments = shape.moments;
-            bounding.center_in_model = shape.center_in_model;
-            bounding.body_to_model = shape.body_to_model;
-            world.shapes.push_back(bounding);
-        }
-        world.shape[body] = sphere;
-    }
 }
 
 // Room for a dense crowd, so that a new record of contacts in a long run costs no allocation.
@@ -224,15 +143,17 @@ void Pipeline::find_pairs() {
         for (const Pair& pair : found_)
             if (!(pair.a < pair.b && pair.b < rows_.size()))
                 throw std::runtime_error("it reported the pair " + pair_text(pair) + " of " +
-                                         std::to_string(rows_.size()) + " rows; a pair is two rows, the lower one first");
+                                         std::to_string(rows_.size()) +
+                                         " rows; a pair is two rows, the lower one first");
     });
     pairs.clear();
     for (const Pair& pair : found_) pairs.push_back({rows_[pair.a], rows_[pair.b]});
     add_half_space_pairs();
     std::sort(pairs.begin(), pairs.end());
     if (const auto twice = std::adjacent_find(pairs.begin(), pairs.end()); twice != pairs.end())
-        throw std::runtime_error("broadphase '" + std::string(broadphase_plugin->descriptor->name) + "' failed at step " +
-                                 std::to_string(measure.steps) + ": it reported the bodies " + pair_text(*twice) + " twice");
+        throw std::runtime_error("broadphase '" + std::string(broadphase_plugin->descriptor->name) +
+                                 "' failed at step " + std::to_string(measure.steps) + ": it reported the bodies " +
+                                 pair_text(*twice) + " twice");
     measure.pairs += pairs.size();
 }
 
@@ -271,7 +192,8 @@ std::string complaint(const Contact& c, Detail detail) {
     if (!c.normal.allFinite() || !c.arm_a.allFinite() || !c.arm_b.allFinite() || !std::isfinite(c.depth))
         return "a value that is not finite";
     if (detail == Detail::overlap) return "";
-    if (!(std::abs(c.normal.norm() - 1) < 1e-6)) return "a normal of length " + std::to_string(c.normal.norm()) + ", not 1";
+    if (!(std::abs(c.normal.norm() - 1) < 1e-6))
+        return "a normal of length " + std::to_string(c.normal.norm()) + ", not 1";
     if (!(c.depth > 0)) return "a depth of " + std::to_string(c.depth) + " m, not above 0";
     return "";
 }
@@ -288,11 +210,12 @@ void Pipeline::find_contacts() {
         const Pair pair{contact.a, contact.b};
         while (i < routed_.size() && routed_[i] < pair) ++i;
         const bool asked = i < routed_.size() && routed_[i] == pair;
-        const std::string wrong = asked ? complaint(contact, detail_[i]) : "a pair that was not asked for, or out of order";
+        const std::string wrong =
+            asked ? complaint(contact, detail_[i]) : "a pair that was not asked for, or out of order";
         if (!wrong.empty())
-            throw std::runtime_error("narrowphase '" + std::string(narrowphase_plugin->descriptor->name) + "' failed at step " +
-                                     std::to_string(measure.steps) + ": its contact of the bodies " + pair_text(pair) +
-                                     " has " + wrong);
+            throw std::runtime_error("narrowphase '" + std::string(narrowphase_plugin->descriptor->name) +
+                                     "' failed at step " + std::to_string(measure.steps) +
+                                     ": its contact of the bodies " + pair_text(pair) + " has " + wrong);
         contact.rule = rule_[i];
     }
     measure.contacts += contacts.rows.size();
@@ -321,9 +244,11 @@ void Pipeline::respond(double dt) {
 
 void Pipeline::respond_with(Rule& rule, double dt) {
     ResponseOutput output{events};
-    run_stage(StageKind::response, rule.plugin->descriptor->name,
-              [&] { rule.stage->respond({rule.contacts, rule.hit, dt}, world, output); });
-    for (std::size_t i = 0; i < rule.contacts.size(); ++i) contacts.rows[rule.rows[i]].impulse = rule.contacts[i].impulse;
+    run_stage(StageKind::response, rule.plugin->descriptor->name, [&] {
+        rule.stage->respond({rule.contacts, rule.hit, dt}, world, output);
+    });
+    for (std::size_t i = 0; i < rule.contacts.size(); ++i)
+        contacts.rows[rule.rows[i]].impulse = rule.contacts[i].impulse;
     measure.unresolved += output.unresolved;
     measure.after_response(world, rule.contacts, output.dissipated_J);
 }

@@ -11,10 +11,10 @@ struct Rule {
     const LoadedPlugin* plugin;
     StagePtr<Response> stage;
     std::vector<std::string> kinds;
-    Detail detail;  // what the narrowphase is asked for on behalf of this rule
-    std::vector<Contact> contacts;   // of this step, canonical order
-    std::vector<std::size_t> rows;   // where they stand in Pipeline::contacts
-    std::vector<std::uint8_t> hit;   // see ResponseInput
+    Detail detail;                  // what the narrowphase is asked for on behalf of this rule
+    std::vector<Contact> contacts;  // of this step, canonical order
+    std::vector<std::size_t> rows;  // where they stand in Pipeline::contacts
+    std::vector<std::uint8_t> hit;  // see ResponseInput
 };
 
 class Pipeline {
@@ -54,6 +54,8 @@ public:
     ShapeKind walls = ShapeKind::half_space;
 
 private:
+    static constexpr std::uint32_t no_rule = ~0u;
+
     void negotiate(const PipelineConfig& config, const PluginLibrary& plugins);
     void use_bounding_spheres();
     void reserve();
@@ -77,10 +79,10 @@ private:
     std::vector<Aabb> bounds_;                  // by row
     std::vector<std::uint8_t> row_is_static_;
     std::uint64_t generation_ = 0;
-    std::vector<Pair> found_;                   // what the broadphase said, rows
-    std::vector<Pair> routed_;                  // pairs that a rule takes and whose boxes do overlap
+    std::vector<Pair> found_;   // what the broadphase said, rows
+    std::vector<Pair> routed_;  // pairs that a rule takes and whose boxes do overlap
     std::vector<Detail> detail_;
-    std::vector<std::uint32_t> rule_;           // by routed pair
+    std::vector<std::uint32_t> rule_;  // by routed pair
     struct Saved {
         std::vector<Vec3> position, velocity, angular_velocity;
         std::vector<Quat> orientation;

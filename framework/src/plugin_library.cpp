@@ -79,9 +79,9 @@ auto guarded(const LoadedPlugin& plugin, const SourceLocation& where, const char
 
 bool is_of_kind(const Stage* stage, StageKind kind) {
     switch (kind) {
-        case StageKind::broadphase: return dynamic_cast<const Broadphase*>(stage);
-        case StageKind::narrowphase: return dynamic_cast<const Narrowphase*>(stage);
-        case StageKind::response: return dynamic_cast<const Response*>(stage);
+    case StageKind::broadphase: return dynamic_cast<const Broadphase*>(stage);
+    case StageKind::narrowphase: return dynamic_cast<const Narrowphase*>(stage);
+    case StageKind::response: return dynamic_cast<const Response*>(stage);
     }
     return false;
 }

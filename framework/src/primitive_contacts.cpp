@@ -41,8 +41,7 @@ void sphere_box(double radius, const Vec3& half_b, const Mat3& rotation_b, const
 
 void sphere_half_space(double radius, const Vec3& normal_b, const Vec3& b, Regions& regions) {
     const double depth = radius + normal_b.dot(b);  // the centre stands -normal.b above the plane
-    if (depth > 0)
-        regions.push_back(ContactRegion::single(-normal_b, (0.5 * depth - radius) * normal_b, depth));
+    if (depth > 0) regions.push_back(ContactRegion::single(-normal_b, (0.5 * depth - radius) * normal_b, depth));
 }
 
 void box_half_space(const Vec3& half, const Mat3& rotation_a, const Vec3& normal_b, const Vec3& b, Regions& regions) {

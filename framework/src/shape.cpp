@@ -19,10 +19,10 @@ bool positive(double x) { return x > 0 && x < infinity; }
 
 const char* to_string(ShapeKind kind) {
     switch (kind) {
-        case ShapeKind::sphere: return "sphere";
-        case ShapeKind::box: return "box";
-        case ShapeKind::half_space: return "half_space";
-        case ShapeKind::mesh: return "mesh";
+    case ShapeKind::sphere: return "sphere";
+    case ShapeKind::box: return "box";
+    case ShapeKind::half_space: return "half_space";
+    case ShapeKind::mesh: return "mesh";
     }
     return "unknown";
 }

@@ -21,7 +21,7 @@ public:
         pipeline.save();
         pipeline.integrate(dt);
         is_back_.assign(pipeline.world.size(), 0);
-        // A body that goes back may stand where another one moved to: that one goes back too, until nothing new touches.
+        // A body that goes back may stand where another one moved to: then that one goes back too, and so on.
         do {
             pipeline.detect();
             pipeline.respond(dt);
@@ -69,7 +69,7 @@ private:
         pipeline.detect();
     }
 
-    // Leaves the world at the first moment, to the tolerance, after which something approaches in contact. Returns the time.
+    // Leaves the world where something begins to approach in contact, found to the tolerance. Returns the time taken.
     static double advance_to_impact(Pipeline& pipeline, double time, double tolerance) {
         double before = 0, after = time;
         while (after - before > tolerance) {

@@ -12,10 +12,10 @@ public:
 };
 
 // discrete   move everything, then answer the contacts found; bodies may overlap for some steps
-// rollback   the thesis's: whatever touches after the motion goes back to its last pose; at the end of a step nothing that was free
-//            overlaps. Positions put back do not conserve potential energy or angular momentum exactly.
-// bisection  the thesis's "optimised pseudo-dynamic": the first approaching contact of the step is found in time by halving,
-//            to tolerance * dt; the world goes on from there. What overlaps only in between is missed.
+// rollback   the thesis's: whatever touches after the motion goes back to its last pose; at the end of a step nothing
+//            overlaps that was free before. Putting bodies back does not keep potential energy or angular momentum.
+// bisection  the thesis's "optimised pseudo-dynamic": the first approaching contact of the step is found in time by
+//            halving, to tolerance * dt; the world goes on from there. What overlaps only in between is missed.
 // Throws std::invalid_argument for another mode.
 std::unique_ptr<Stepping> make_stepping(const StepConfig& config);
 

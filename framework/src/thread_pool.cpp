@@ -22,7 +22,8 @@ ThreadPool::~ThreadPool() = default;
 // No coarser partition than one by one: the caller has cut the work to a worthwhile size.
 void ThreadPool::for_each(std::size_t count, Task task, void* context) {
     arena_->arena.execute([=] {
-        tbb::parallel_for(std::size_t{0}, count, [=](std::size_t i) { task(context, i); }, tbb::simple_partitioner{});
+        tbb::parallel_for(
+            std::size_t{0}, count, [=](std::size_t i) { task(context, i); }, tbb::simple_partitioner{});
     });
 }
 

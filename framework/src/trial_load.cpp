@@ -66,7 +66,8 @@ std::string read_all(int pipe) {
 
 std::string death(pid_t child) {
     int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
     if (!WIFSIGNALED(status)) return "ends the process that loads it";
     if (WTERMSIG(status) == SIGALRM) return "takes more than " + std::to_string(patience) + " s to load";
     return std::string("kills the process that loads it: ") + strsignal(WTERMSIG(status));

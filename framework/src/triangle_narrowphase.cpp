@@ -11,7 +11,7 @@ template <class Flush>
 class HierarchyWalk {
 public:
     HierarchyWalk(const MeshPair& pair, Flush flush) : pair_(pair), flush_(flush) {
-        // Rounding may not make two boxes seem apart: Gottschalk, Lin & Manocha, OBBTree, 1996, add an epsilon likewise.
+        // Rounding may not make two boxes seem apart; Gottschalk, Lin & Manocha (OBBTree, 1996) do likewise.
         reach_ = pair.b_to_a.rotation.cwiseAbs().array() + 1e-12;
     }
 

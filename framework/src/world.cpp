@@ -105,8 +105,8 @@ Vec3 World::angular_momentum(std::uint32_t body) const {
 
 double World::kinetic_energy(std::uint32_t body) const {
     if (is_static[body]) return 0;
-    return 0.5 * (velocity[body].squaredNorm() / inverse_mass[body] +
-                  angular_velocity[body].dot(angular_momentum(body)));
+    return 0.5 *
+           (velocity[body].squaredNorm() / inverse_mass[body] + angular_velocity[body].dot(angular_momentum(body)));
 }
 
 std::uint32_t World::intern_kind(const std::string& kind_name) {
@@ -119,13 +119,13 @@ Aabb world_bounds(const World& world, std::uint32_t body) {
     const Shape& shape = world.shape_of(body);
     const Vec3& position = world.position[body];
     switch (shape.kind) {
-        case ShapeKind::sphere: {
-            const Vec3 half = Vec3::Constant(shape.radius);
-            return {position - half, position + half};
-        }
-        case ShapeKind::half_space: return {Vec3::Constant(-infinity), Vec3::Constant(infinity)};
-        case ShapeKind::box:
-        case ShapeKind::mesh: break;
+    case ShapeKind::sphere: {
+        const Vec3 half = Vec3::Constant(shape.radius);
+        return {position - half, position + half};
+    }
+    case ShapeKind::half_space: return {Vec3::Constant(-infinity), Vec3::Constant(infinity)};
+    case ShapeKind::box:
+    case ShapeKind::mesh: break;
     }
     // A turned box reaches |R| h along the world axes: Arvo, "Transforming axis-aligned bounding boxes", Graphics Gems.
     const Mat3 rotation = world.orientation[body].toRotationMatrix();

@@ -1,11 +1,12 @@
 // Broadphase by binary space partition: space is halved by planes until few boxes are left in each part.
 //
-// Source    Fuchs, Kedem, Naylor, On visible surface generation by a priori tree structures (SIGGRAPH 1980), with planes
-//           across the axes only: Bentley's k-d tree (1975); Ericson, Real-Time Collision Detection (2005), 7.3-8.3.
+// Source    Fuchs, Kedem, Naylor, On visible surface generation by a priori tree structures (SIGGRAPH 1980), with
+//           planes across the axes only: Bentley's k-d tree (1975); Ericson, Real-Time Collision Detection (2005), 7.3-8.3.
 // Cost      O(N log N + pairs) while most planes cut few boxes. The tree is walked as it is made and never stored:
 //           memory is 4 bytes for each box in the parts between the root and the present one.
 // Accuracy  Exact: a pair is reported if and only if its closed boxes overlap.
-// Choose it for boxes that are long, thin or of very different sizes and lie unevenly: it has no cell size to get wrong.
+// Choose it for boxes that are long, thin or of very different sizes and lie unevenly: it has no cell size to get
+//        wrong.
 #include <kolize/plugin.h>
 
 #include <algorithm>

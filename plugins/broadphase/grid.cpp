@@ -4,15 +4,15 @@
 // Cost      O(N + pairs) for boxes of similar size, times the number of levels when sizes differ; 60 bytes a box and
 //           four 4-byte cells a box. Nothing is kept between steps, so fast motion costs no more than slow.
 // Accuracy  Exact: a pair is reported if and only if its closed boxes overlap.
-// Choose it almost always. Where many boxes are long and thin, so that cells as large as the boxes are long hold many of
-// them, `bsp` and `sphere_hierarchy` are better.
+// Choose it almost always. Where many boxes are long and thin, so that cells as large as the boxes are long hold many
+// of them, `bsp` and `sphere_hierarchy` are better.
 //
-// Every box is filed in one cell only, that of its min corner. No cell is smaller than the boxes filed in it, so the min
-// corners of two overlapping boxes are at most one cell apart in every axis, and looking at one half of the neighbours
-// finds each pair once. Boxes of very different size go to different levels, each a grid of its own; a box then looks
-// at its surroundings in all the coarser ones. The array of cells is as long as there are boxes to fill it, however far
-// apart they are: what lies beyond the end of a row goes on in the next one, and beyond the last row in the first. That
-// can only add candidates, and leaves neighbours in x neighbours in memory.
+// Every box is filed in one cell only, that of its min corner. No cell is smaller than the boxes filed in it, so the
+// min corners of two overlapping boxes are at most one cell apart in every axis, and looking at one half of the
+// neighbours finds each pair once. Boxes of very different size go to different levels, each a grid of its own; a box
+// then looks at its surroundings in all the coarser ones. The array of cells is as long as there are boxes to fill it,
+// however far apart they are: what lies beyond the end of a row goes on in the next one, and beyond the last row in the
+// first. That can only add candidates, and leaves neighbours in x neighbours in memory.
 #include <kolize/plugin.h>
 
 #include <algorithm>
@@ -145,8 +145,8 @@ private:
     Cell cell_of(const Level& level, const Point& p) const {
         Cell cell;
         for (int axis = 0; axis < 3; ++axis)
-            cell[axis] = static_cast<std::int64_t>((0.5 * p[axis] - 0.5 * corners_.min[axis]) *
-                                                   level.cells_per_half_metre);
+            cell[axis] =
+                static_cast<std::int64_t>((0.5 * p[axis] - 0.5 * corners_.min[axis]) * level.cells_per_half_metre);
         return cell;
     }
 
@@ -198,7 +198,8 @@ private:
             const std::uint32_t corner = coarse.slot(low) + 2 * coarse.slots - coarse.layer - coarse.row - 1;
             for (std::uint32_t z = 0; z <= high[2] - low[2] + 1; ++z)
                 for (std::uint32_t y = 0; y <= high[1] - low[1] + 1; ++y)
-                    test_slots(item, coarse, (corner + z * coarse.layer + y * coarse.row) % coarse.slots, length, pairs);
+                    test_slots(item, coarse, (corner + z * coarse.layer + y * coarse.row) % coarse.slots, length,
+                               pairs);
         }
     }
 

@@ -2,8 +2,8 @@
 //
 // Source    Hubbard, Approximating polyhedra with spheres for time-critical collision detection (1996), 3;
 //           Ericson, Real-Time Collision Detection (2005), 6.2.1 top-down construction, 6.5.1 the union of two spheres.
-// Cost      O(N log N) to build and about O(N + pairs) to walk; about 200 bytes a box. While boxes stay near their neighbours the
-//           tree of the last step is kept and only its spheres are made anew, in O(N).
+// Cost      O(N log N) to build and about O(N + pairs) to walk; about 200 bytes a box. While boxes
+//           stay near their neighbours the tree of the last step is kept and only its spheres are made anew, in O(N).
 // Accuracy  Exact: spheres are rounded outward, and what they leave is tested box against box.
 // Choose it for bodies of very different sizes or uneven density; for similar ones `grid` is several times faster.
 #include <kolize/plugin.h>

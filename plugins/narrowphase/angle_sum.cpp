@@ -1,7 +1,7 @@
 // Triangle-triangle test by angle sums, as the source thesis did it.
 //
-// Every edge of one triangle is cut with the plane of the other. The cut lies inside that triangle if the three angles under
-// which it sees the sides add up to a full turn, within epsilon. Then the triangles change roles.
+// Every edge of one triangle is cut with the plane of the other. The cut lies inside that triangle if the three angles
+// under which it sees the sides add up to a full turn, within epsilon. Then the triangles change roles.
 //
 // Source:   the angle-summation point-in-polygon test (Haines, "Point in polygon strategies", Graphics Gems IV, 1994).
 // Cost:     up to six cuts with three square roots and three arc cosines each: several times Moller's test.

@@ -39,9 +39,9 @@ struct Row {
     Contact* contact = nullptr;
     Vec3 moment_a = Vec3::Zero();  // arm x normal
     Vec3 moment_b = Vec3::Zero();
-    Vec3 turn_a = Vec3::Zero();    // change of angular velocity per unit impulse
+    Vec3 turn_a = Vec3::Zero();  // change of angular velocity per unit impulse
     Vec3 turn_b = Vec3::Zero();
-    double k = 0;                  // J M^-1 J^T: normal velocity per unit impulse, 1/kg
+    double k = 0;  // J M^-1 J^T: normal velocity per unit impulse, 1/kg
     double restitution = 1;
 };
 
@@ -186,7 +186,7 @@ private:
 
     int max_impulses_ = 64;
 
-    std::vector<std::uint32_t> slot_;    // per body of the world: its place in bodies_, or none
+    std::vector<std::uint32_t> slot_;  // per body of the world: its place in bodies_, or none
     std::vector<Body> bodies_;
     std::vector<IslandMember> members_;  // sorted: the contacts of an island side by side, in canonical order
     std::vector<Row> rows_;              // as members_

@@ -50,7 +50,9 @@ std::vector<Aabb> scattered(Size&& size) {
 }  // namespace
 
 TEST_CASE("broadphases agree on thousands of boxes", "[broadphase]") {
-    SECTION("of one size") { require_agreement(scattered([](std::size_t, double) { return 1.0; })); }
+    SECTION("of one size") {
+        require_agreement(scattered([](std::size_t, double) { return 1.0; }));
+    }
     SECTION("of sizes after a power law") {
         require_agreement(scattered([](std::size_t, double u) { return 0.1 * std::pow(1 - u, -0.5); }));
     }

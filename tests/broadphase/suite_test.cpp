@@ -50,8 +50,7 @@ TEST_CASE("the broadphase suite catches each way of being wrong", "[broadphase][
     SECTION("boxes of the last frame") { require_caught("remembers", "moving boxes, rows kept", "frame"); }
     SECTION("NaN accepted") { require_caught("takes_nan", "refuses non-finite boxes", "no std::invalid_argument"); }
     SECTION("allocation") {
-        if (AllocationCounter::available())
-            require_caught("allocates", "warm calls allocate nothing", "allocations");
+        if (AllocationCounter::available()) require_caught("allocates", "warm calls allocate nothing", "allocations");
     }
 }
 
@@ -68,9 +67,10 @@ TEST_CASE("the matrix has a row a check, a column a plugin, and the details belo
     std::ostringstream out;
     print_matrix(out, {{"one", {{"first", Outcome::pass, ""}, {"second check", Outcome::skip, "no time"}}},
                        {"another", {{"first", Outcome::fail, "boxes {}"}, {"second check", Outcome::pass, ""}}}});
-    CHECK(out.str() == "               one  another\n"
-                       "first         pass     FAIL\n"
-                       "second check  skip     pass\n"
-                       "one, second check: skip: no time\n"
-                       "another, first: FAIL: boxes {}\n");
+    CHECK(out.str() ==
+          "               one  another\n"
+          "first         pass     FAIL\n"
+          "second check  skip     pass\n"
+          "one, second check: skip: no time\n"
+          "another, first: FAIL: boxes {}\n");
 }

@@ -77,8 +77,8 @@ TEST_CASE("the program says its version and how it is used", "[cli]") {
     const Outcome version = shell.kolize("--version");
     CHECK(version.code == 0);
     CHECK(version.out.find("(plugin API 1)") != std::string::npos);
-    for (const std::string command : {"run", "compare", "bench", "check", "plugins", "plugins list", "plugins show",
-                                      "plugins test"}) {
+    for (const std::string command :
+         {"run", "compare", "bench", "check", "plugins", "plugins list", "plugins show", "plugins test"}) {
         const Outcome help = shell.kolize(command + " --help");
         CAPTURE(command);
         CHECK(help.code == 0);
@@ -172,8 +172,9 @@ TEST_CASE("run --expect says which bounds hold and exits with 1 if one does not"
 TEST_CASE("compare runs every combination and marks those that nothing beats", "[cli]") {
     const Shell shell;
     shell.folder.write("scene.toml", two_balls);
-    const Outcome outcome = shell.kolize("compare scene.toml --vary broadphase.plugin=grid,brute_force "
-                                         "--vary step.dt=0.01,0.02,0.04 --repeat 2 --report out --json -");
+    const Outcome outcome = shell.kolize(
+        "compare scene.toml --vary broadphase.plugin=grid,brute_force "
+        "--vary step.dt=0.01,0.02,0.04 --repeat 2 --report out --json -");
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
     const json result = json::parse(outcome.out);

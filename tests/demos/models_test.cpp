@@ -44,8 +44,8 @@ TriangleSoup fighter() { return read_mesh(demos / "box_fighter" / "fighter.obj")
 
 int genus(const TriangleSoup& soup) {  // of one closed piece
     const auto mesh = build_mesh(soup);
-    const auto euler = static_cast<int>(mesh->vertices.size() + mesh->triangles.size()) -
-                       static_cast<int>(mesh->edges.size());
+    const auto euler =
+        static_cast<int>(mesh->vertices.size() + mesh->triangles.size()) - static_cast<int>(mesh->edges.size());
     return (2 - euler) / 2;
 }
 
@@ -144,14 +144,16 @@ TEST_CASE("The test for self-intersection finds what crosses and passes what onl
     TriangleSoup pierced = box;  // a vertex pushed through the opposite side
     pierced.vertices[7] = Vec3(-3, -2, -1);
     CHECK(self_intersections(pierced, 1) > 0);
-    const TriangleSoup folded{{Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0), Vec3(1, 2, 0)},
-                              {{0, 1, 2}, {0, 3, 1}}, {}, ""};
+    const TriangleSoup folded{
+        {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0), Vec3(1, 2, 0)}, {{0, 1, 2}, {0, 3, 1}}, {}, ""};
     CHECK(self_intersections(folded, 1) == 1);
     const TriangleSoup touching{
         {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0), Vec3(1, 1, 0), Vec3(1, 1, 2), Vec3(2, 1, 2)},
-        {{0, 1, 2}, {3, 4, 5}}, {}, ""};
+        {{0, 1, 2}, {3, 4, 5}},
+        {},
+        ""};
     CHECK(self_intersections(touching, 1) == 1);  // a vertex on a face that does not name it
-    const TriangleSoup neighbours{{Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0), Vec3(-4, 0, 0), Vec3(0, -4, 0)},
-                                  {{0, 1, 2}, {0, 3, 4}}, {}, ""};
+    const TriangleSoup neighbours{
+        {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0), Vec3(-4, 0, 0), Vec3(0, -4, 0)}, {{0, 1, 2}, {0, 3, 4}}, {}, ""};
     CHECK(self_intersections(neighbours, 1) == 0);
 }

@@ -102,7 +102,8 @@ TEST_CASE("as many chunks run at the same time as there are threads, and no more
     const auto everyone_came = [&] { return most >= threads || std::chrono::steady_clock::now() > deadline; };
     host->parallel_for(200, 1, [&](std::size_t, std::size_t, std::size_t) {
         const int now = ++inside;
-        for (int seen = most; now > seen && !most.compare_exchange_weak(seen, now);) {}
+        for (int seen = most; now > seen && !most.compare_exchange_weak(seen, now);) {
+        }
         while (!everyone_came()) std::this_thread::yield();
         --inside;
     });

@@ -47,9 +47,7 @@ Drift rotational_drift(World& world, const std::string& integrator, double dt, l
     return drift;
 }
 
-Vec3 body_angular_velocity(const World& world) {
-    return world.orientation[0].conjugate() * world.angular_velocity[0];
-}
+Vec3 body_angular_velocity(const World& world) { return world.orientation[0].conjugate() * world.angular_velocity[0]; }
 
 double attitude_error_after(double time, long steps, const Vec3& moments, const Vec3& spin) {
     World world = spinning(moments, spin);
@@ -129,8 +127,8 @@ TEST_CASE("A body with three equal moments keeps its angular velocity bit for bi
     World world = spinning(Vec3::Ones(), spin, Quat(Eigen::AngleAxisd(0.3, Vec3::UnitX())));
     advance(world, "pdmv4", 1e-3, 100000);
     CHECK(same_bits(world.angular_velocity[0], spin));
-    const Quat expected = Quat(Eigen::AngleAxisd(100 * spin.norm(), spin.normalized())) *
-                          Quat(Eigen::AngleAxisd(0.3, Vec3::UnitX()));
+    const Quat expected =
+        Quat(Eigen::AngleAxisd(100 * spin.norm(), spin.normalized())) * Quat(Eigen::AngleAxisd(0.3, Vec3::UnitX()));
     CHECK(attitude_error(world.orientation[0], expected) < 5e-13);  // rounding of 100 000 products
 }
 

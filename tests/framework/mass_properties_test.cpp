@@ -27,8 +27,7 @@ struct ExactMass {
         for (const Triangle& t : soup.triangles) add(point(soup, t[0]), point(soup, t[1]), point(soup, t[2]));
         for (int i = 0; i < 3; ++i) center[i] /= 4 * volume;
         for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j)
-                covariance[i][j] = covariance[i][j] / (20 * volume) - center[i] * center[j];
+            for (int j = 0; j < 3; ++j) covariance[i][j] = covariance[i][j] / (20 * volume) - center[i] * center[j];
         volume /= 6;
     }
 

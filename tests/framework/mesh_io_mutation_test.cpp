@@ -20,9 +20,12 @@ std::vector<Sample> samples() {
     const ScratchFolder folder;
     const TriangleSoup solid = cone(5, 1, 2);
     write_obj(solid, folder.path() / "out.obj");
-    return {{"m.obj", file_bytes(folder.path() / "out.obj")}, {"m.off", as_off(solid)},
-            {"t.stl", as_text_stl(solid)},                    {"b.stl", as_binary_stl(solid)},
-            {"t.ply", as_text_ply(solid)},                    {"l.ply", as_binary_ply(solid, false)},
+    return {{"m.obj", file_bytes(folder.path() / "out.obj")},
+            {"m.off", as_off(solid)},
+            {"t.stl", as_text_stl(solid)},
+            {"b.stl", as_binary_stl(solid)},
+            {"t.ply", as_text_ply(solid)},
+            {"l.ply", as_binary_ply(solid, false)},
             {"b.ply", as_binary_ply(solid, true)}};
 }
 

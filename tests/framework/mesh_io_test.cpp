@@ -24,9 +24,9 @@ std::string as_obj(const TriangleSoup& soup, const ScratchFolder& folder) {
 }
 
 std::vector<NamedFile> in_all_formats(const TriangleSoup& soup, const ScratchFolder& folder) {
-    return {{"a.obj", as_obj(soup, folder)},        {"a.off", as_off(soup)},
-            {"text.stl", as_text_stl(soup)},        {"binary.stl", as_binary_stl(soup)},
-            {"text.ply", as_text_ply(soup)},        {"little.ply", as_binary_ply(soup, false)},
+    return {{"a.obj", as_obj(soup, folder)},       {"a.off", as_off(soup)},
+            {"text.stl", as_text_stl(soup)},       {"binary.stl", as_binary_stl(soup)},
+            {"text.ply", as_text_ply(soup)},       {"little.ply", as_binary_ply(soup, false)},
             {"big.ply", as_binary_ply(soup, true)}};
 }
 
@@ -81,7 +81,7 @@ TEST_CASE("The same solid in every format is the same soup", "[mesh_io]") {
         CAPTURE(file.name);
         const TriangleSoup soup = read_mesh(folder.write(file.name, file.bytes));
         CHECK(soup.vertices.size() == solid.vertices.size());  // STL vertices are joined
-        CHECK((corners(soup) == corners(solid)));  // not to print a thousand numbers
+        CHECK((corners(soup) == corners(solid)));              // not to print a thousand numbers
         CHECK(inspect(soup).closed());
         CHECK(soup.file == (folder.path() / file.name).string());
     }
@@ -105,8 +105,8 @@ TEST_CASE("An OBJ file that was written reads back to the same bits", "[mesh_io]
     TriangleSoup soup;
     while (soup.vertices.size() < 3000) {
         Vec3 p;
-        for (double& x : p)
-            do x = std::bit_cast<double>(random());
+        for (double& x : p) do
+                x = std::bit_cast<double>(random());
             while (!std::isfinite(x));
         soup.vertices.push_back(p);
     }
@@ -142,23 +142,25 @@ TEST_CASE("OBJ faces take all forms of corners, negative numbers and polygons", 
 
 TEST_CASE("OFF files take comments, colours and further columns", "[mesh_io]") {
     const ScratchFolder folder;
-    const std::string square = "  # comment\nCOFF # of a square\n4 1 4\n\n0 0 0 255 0 0 255\n1 0 0 0 0 0 0\n"
-                               "1 1 0 0 0 0 0 # corner\n0 1 0 1 1 1 1\n4 0 1 2 3 0.5 0.5 0.5\n";
+    const std::string square =
+        "  # comment\nCOFF # of a square\n4 1 4\n\n0 0 0 255 0 0 255\n1 0 0 0 0 0 0\n"
+        "1 1 0 0 0 0 0 # corner\n0 1 0 1 1 1 1\n4 0 1 2 3 0.5 0.5 0.5\n";
     const TriangleSoup coloured = read_mesh(folder.write("c.off", square));
     CHECK(coloured.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});
     CHECK(coloured.vertices[3] == Vec3(0, 1, 0));
     CHECK(coloured.lines == std::vector<int>{9, 9});
     const TriangleSoup dense = read_mesh(folder.write("d.off", "OFF 3 1 0 0 0 0 1 0 0 0 1 0 3 0 1 2"));
     CHECK(dense.triangles == std::vector<Triangle>{{0, 1, 2}});
-    CHECK(read_mesh(folder.write("n.off", "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 2 1 0\n"))
-              .triangles == std::vector<Triangle>{{2, 1, 0}});
+    CHECK(read_mesh(folder.write("n.off", "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 2 1 0\n")).triangles ==
+          std::vector<Triangle>{{2, 1, 0}});
 }
 
 TEST_CASE("STL vertices are joined when they are equal, minus zero included", "[mesh_io]") {
     const ScratchFolder folder;
-    const std::string text = "solid\nfacet normal nan nan nan\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
-                             "endloop\nendfacet\nendsolid\nsolid two parts\nfacet normal 0 0 1\nouter loop\n"
-                             "vertex -0 0 -0.0\nvertex 1e0 -0 0\nvertex 1 1 0\nendloop\nendfacet\nendsolid two parts\n";
+    const std::string text =
+        "solid\nfacet normal nan nan nan\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+        "endloop\nendfacet\nendsolid\nsolid two parts\nfacet normal 0 0 1\nouter loop\n"
+        "vertex -0 0 -0.0\nvertex 1e0 -0 0\nvertex 1 1 0\nendloop\nendfacet\nendsolid two parts\n";
     const TriangleSoup soup = read_mesh(folder.write("two.stl", text));
     CHECK(soup.vertices.size() == 4);
     CHECK(soup.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}});
@@ -267,8 +269,7 @@ TEST_CASE("Broken OFF files are refused with file and line", "[mesh_io]") {
         {{"a.off", "4OFF\n"}, ":1: OFF files of the kind '4OFF' are not read; OFF, COFF, NOFF and STOFF are"},
         {{"a.off", "OFF\n"}, ":2: the number of vertices is missing"},
         {{"a.off", "OFF\n-3 1 0\n"}, ":2: the number of vertices must not be negative, is -3"},
-        {{"a.off", "OFF\n300000000 1 0\n0 0 0\n"},
-         ":2: the number of vertices is 300000000, but only 11 bytes follow"},
+        {{"a.off", "OFF\n300000000 1 0\n0 0 0\n"}, ":2: the number of vertices is 300000000, but only 11 bytes follow"},
         {{"a.off", "OFF\n1 9000000000000000000 0\n0 0 0\n"},
          ":2: the number of faces is 9000000000000000000, but only 9 bytes follow"},
         {{"a.off", points + "3 0 1 3\n"}, ":6: a face names vertex 3, but the file has 3, counted from 0"},

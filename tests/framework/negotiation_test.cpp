@@ -42,7 +42,8 @@ TEST_CASE("a broadphase that reports rows that do not exist is found out, with s
     Scene scene = two_balls();
     scene.pipeline.broadphase = stage("liar");
     CHECK(refusal(scene, liars()) ==
-          "broadphase 'liar' failed at step 0: it reported the pair 0 and 2 of 2 rows; a pair is two rows, the lower one first");
+          "broadphase 'liar' failed at step 0: it reported the pair 0 and 2 of 2 rows; a pair is two rows, the lower "
+          "one first");
 }
 
 TEST_CASE("a narrowphase that gives less than it claims is found out, with step and pair", "[negotiation]") {
@@ -54,13 +55,15 @@ TEST_CASE("a narrowphase that gives less than it claims is found out, with step 
     CHECK(refusal(scene, liars()) == who + "a value that is not finite");
 }
 
-TEST_CASE("a response that needs more than the narrowphase gives is refused, naming plugins that would do", "[negotiation]") {
+TEST_CASE("a response that needs more than the narrowphase gives is refused, naming plugins that would do",
+          "[negotiation]") {
     PluginFolder folder;
     const PluginLibrary library({KOLIZE_PLUGIN_DIR, folder.link("overlap_only").path()});
     Scene scene = two_balls();
     scene.pipeline.narrowphase = stage("overlap_only");
     CHECK(refusal(scene, library) ==
-          "scene.toml:3:10: response 'impulse' needs normal, but narrowphase 'overlap_only' as configured gives only overlap; "
+          "scene.toml:3:10: response 'impulse' needs normal, but narrowphase 'overlap_only' as configured gives only "
+          "overlap; "
           "these would do: angle_sum, fcl, moller");
     scene.pipeline.responses = {{stage("explode"), {}}};
     CHECK(refusal(scene, library).empty());

@@ -78,8 +78,8 @@ TEST_CASE("a plugin with another ABI tag is refused by the field that differs", 
                                                        std::to_string(2 * host.eigen_alignment));
     CHECK(refusal_of_fixture("other_eigen") == "Eigen version: host " + version + ", plugin 3.3.9");
     CHECK(refusal_of_fixture("other_strings") == "std::string ABI (_GLIBCXX_USE_CXX11_ABI): host 1, plugin 7");
-    CHECK(refusal_of_fixture("other_stl") == "debug standard library (_GLIBCXX_DEBUG): host " +
-                                                 std::to_string(host.debug_stl) + ", plugin 7");
+    CHECK(refusal_of_fixture("other_stl") ==
+          "debug standard library (_GLIBCXX_DEBUG): host " + std::to_string(host.debug_stl) + ", plugin 7");
     CHECK(refusal_of_fixture("other_layout") == "layout of the shared types (plugin is stale): host " +
                                                     hexadecimal(host.layout) + ", plugin 0x0000000000000007");
 }

@@ -245,16 +245,16 @@ TEST_CASE("overrides by --set replace keys, reaches into lists and takes bare wo
           "--set response.2.plugin: there is no [[response]] table number 2; there are 2, counted from 0");
     CHECK(folder.complaint({{"dt", "1"}}) == "--set dt: a dotted key such as broadphase.cell_size is wanted");
     CHECK(folder.complaint({{"step.dt.x", "1"}}) == "--set step.dt.x: 'dt' is a value, not a table");
-    CHECK(folder.complaint({{"step.dt", "fast"}}) ==
-          "--set step.dt: dt must be a number, is the text \"fast\"");
+    CHECK(folder.complaint({{"step.dt", "fast"}}) == "--set step.dt: dt must be a number, is the text \"fast\"");
     CHECK(folder.complaint({{"step.tme", "1"}}) == "--set step.tme: no key 'tme' in [step]; did you mean 'time'?");
 }
 
 TEST_CASE("settings of a plugin that --set replaced are dropped where the new one has no such parameter", "[scene]") {
     const PluginLibrary plugins({KOLIZE_PLUGIN_DIR});
     const test::ScratchFolder scratch;
-    const auto file = scratch.write("scene.toml", "[broadphase]\nplugin = \"grid\"\ncell_size = 1.0\n"
-                                                  "[narrowphase]\nplugin = \"moller\"\ncontact = \"averaged\"\n");
+    const auto file = scratch.write("scene.toml",
+                                    "[broadphase]\nplugin = \"grid\"\ncell_size = 1.0\n"
+                                    "[narrowphase]\nplugin = \"moller\"\ncontact = \"averaged\"\n");
     const auto load = [&](const Set& set) { return load_scene(file, {{}, set, defaults}, plugins).pipeline; };
     CHECK(load({}).broadphase.settings.count("cell_size") == 1);
     CHECK(load({{"broadphase.plugin", "grid"}}).broadphase.settings.count("cell_size") == 1);
@@ -284,8 +284,9 @@ TEST_CASE("bodies take their states from a table with columns in any order", "[s
 
 TEST_CASE("a broken table of states is refused at the cell", "[scene]") {
     const auto [rows, sentence] = GENERATE(table<std::string, std::string>({
-        {"", "s.csv:1:1: the table is empty; its first line must name columns: x, y, z, qw, qx, qy, qz, vx, vy, vz, "
-             "wx, wy, wz, mass"},
+        {"",
+         "s.csv:1:1: the table is empty; its first line must name columns: x, y, z, qw, qx, qy, qz, vx, vy, vz, "
+         "wx, wy, wz, mass"},
         {"x,mas\n", "s.csv:1:3: no column 'mas' in a table of states; did you mean 'mass'?"},
         {"x,y,x\n", "s.csv:1:5: column 'x' stands there twice"},
         {"x,y\n1\n", "s.csv:2:1: the row has 1 values for 2 columns"},
@@ -294,8 +295,7 @@ TEST_CASE("a broken table of states is refused at the cell", "[scene]") {
         {"x,y\n1,nan\n", "s.csv:2:3: y must be finite, is nan"},
         {"x,mass\n1,-1\n", "s.csv:2:3: mass must be greater than 0"},
         {"x,qw\n1,0\n", "s.csv:2:3: qw, qx, qy, qz is the zero quaternion; no turn at all is [1, 0, 0, 0]"},
-        {"qw,qx\n1,1\n",
-         "s.csv:2:1: qw, qx, qy, qz must be a unit quaternion [w, x, y, z], has length 1.414213562"},
+        {"qw,qx\n1,1\n", "s.csv:2:1: qw, qx, qy, qz must be a unit quaternion [w, x, y, z], has length 1.414213562"},
     }));
     SceneFolder folder;
     folder.write("scene.toml", ball + "[[body]]\nshape = \"ball\"\nfrom = \"s.csv\"\n").write("s.csv", rows);
@@ -310,8 +310,7 @@ TEST_CASE("what is wrong with a scene is said in one sentence with its place", "
         {"[body]", "scene.toml:1:1: body must be a list of tables, each under [[body]]"},
         {"[world]\ngravty = [0, 0, 0]", "scene.toml:2:1: no key 'gravty' in [world]; did you mean 'gravity'?"},
         {"[world]\ngravity = -9.81", "scene.toml:2:11: gravity must be three numbers [x, y, z], is -9.81"},
-        {"[world]\ngravity = [0, 1]",
-         "scene.toml:2:11: gravity must be three numbers [x, y, z], has 2 entries"},
+        {"[world]\ngravity = [0, 1]", "scene.toml:2:11: gravity must be three numbers [x, y, z], has 2 entries"},
         {"[world]\ngravity = [0, nan, 0]", "scene.toml:2:11: gravity must be finite, is nan"},
         {"[world]\ndrag = -1", "scene.toml:2:8: drag must be at least 0, is -1"},
         {"[step]\ndt = 0", "scene.toml:2:6: dt must be greater than 0, is 0"},
@@ -323,8 +322,7 @@ TEST_CASE("what is wrong with a scene is said in one sentence with its place", "
         {"[step]\nmode = \"rolback\"", "scene.toml:2:8: there is no mode 'rolback'; did you mean 'rollback'?"},
         {"[step]\nintegrator = \"pdmv5\"", "scene.toml:2:14: there is no integrator 'pdmv5'; did you mean 'pdmv4'?"},
         {"[[material]]\nrestitution = 1", "scene.toml:1:1: [[material]] needs name"},
-        {"[[material]]\nname = \"m\"\nrestitution = 1.5",
-         "scene.toml:3:15: restitution must be from 0 to 1, is 1.5"},
+        {"[[material]]\nname = \"m\"\nrestitution = 1.5", "scene.toml:3:15: restitution must be from 0 to 1, is 1.5"},
         {"[[material]]\nname = \"m\"\n[[material]]\nname = \"m\"",
          "scene.toml:4:8: there is a material 'm' already, at scene.toml:2:8"},
         {"[[shape]]\nname = \"s\"\nkind = \"sphere\"", "scene.toml:1:1: shape 's' needs radius"},
@@ -340,13 +338,11 @@ TEST_CASE("what is wrong with a scene is said in one sentence with its place", "
          "scene.toml:4:16: half_extents must be greater than 0 on every axis"},
         {"[[shape]]\nname = \"s\"\nkind = \"half_space\"\nnormal = [0, 0, 0]",
          "scene.toml:4:10: normal must have a length that is not 0"},
-        {"[[shape]]\nname = \"s\"\nkind = \"mesh\"\nfile = \"no.obj\"",
-         "scene.toml:4:8: file 'no.obj' does not exist"},
+        {"[[shape]]\nname = \"s\"\nkind = \"mesh\"\nfile = \"no.obj\"", "scene.toml:4:8: file 'no.obj' does not exist"},
         {"[[body]]\nmass = 1", "scene.toml:1:1: [[body]] needs shape"},
         {"[[body]]\nshape = \"ball\"", "scene.toml:2:9: there is no shape 'ball'; there is none"},
         {"[[room]]\nmin = [0, 0, 0]", "scene.toml:1:1: [[room]] needs max"},
-        {"[[room]]\nmin = [0, 0, 0]\nmax = [1, 0, 1]",
-         "scene.toml:3:7: max must be greater than min on every axis"},
+        {"[[room]]\nmin = [0, 0, 0]\nmax = [1, 0, 1]", "scene.toml:3:7: max must be greater than min on every axis"},
         {"[[room]]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nopen = [\"y\"]",
          "scene.toml:4:8: there is no side 'y'; there are -x, +x, -y, +y, -z, +z"},
         {"[broadphase]\nplugin = 3", "scene.toml:2:10: plugin must be text, is 3"},

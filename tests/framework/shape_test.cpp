@@ -50,8 +50,9 @@ TEST_CASE("A mesh that is no solid is refused with its first defect", "[shape]")
     TriangleSoup soup = box_soup(Vec3(1, 1, 1));
     soup.file = "lid.obj";
     soup.triangles.pop_back();
-    CHECK_THROWS_WITH(make_mesh("lid", soup), "the mesh must be the closed surface of a solid, but edge 4-6 has one "
-                                              "triangle (lid.obj, triangle 0)");
+    CHECK_THROWS_WITH(make_mesh("lid", soup),
+                      "the mesh must be the closed surface of a solid, but edge 4-6 has one "
+                      "triangle (lid.obj, triangle 0)");
     CHECK_THROWS_AS(make_mesh("none", {}), std::invalid_argument);
 }
 

@@ -99,7 +99,8 @@ TEST_CASE("warm steps allocate nothing", "[simulation]") {
         }
 }
 
-TEST_CASE("an explosion removes the missile, tells where, and looks no further than the first triangles", "[simulation]") {
+TEST_CASE("an explosion removes the missile, tells where, and looks no further than the first triangles",
+          "[simulation]") {
     Scene scene = empty_scene();
     const std::uint32_t shape = add_shape(scene, make_mesh("cone", subdivided(subdivided(cone(48, 1, 3)))));
     BodyDescription target, missile;
@@ -142,7 +143,7 @@ TEST_CASE("rules send each pair to the first response that fits", "[simulation]"
     Scene scene = empty_scene();
     const std::uint32_t ball = add_shape(scene, make_sphere("ball", 0.5));
     for (const auto& [kind, x, v] : {std::tuple("missile", -3.0, 4.0), std::tuple("body", -1.0, 0.0),
-                                    std::tuple("ball", 3.0, -4.0), std::tuple("ghost", 5.0, -40.0)}) {
+                                     std::tuple("ball", 3.0, -4.0), std::tuple("ghost", 5.0, -40.0)}) {
         BodyDescription body;
         give(body, ball, Vec3(x, 0, 0), Vec3(v, 0, 0)).kind = kind;
         scene.world.add(body);

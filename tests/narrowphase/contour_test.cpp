@@ -162,7 +162,8 @@ TEST_CASE("a sphere in a concave corner touches both walls", "[narrowphase][cont
     CHECK((sum - Vec3::UnitY()).norm() < 1e-9);  // the two walls cancel, the floor pushes up
 }
 
-TEST_CASE("the averaged model's normal is always a unit vector, even where the mean vanishes", "[narrowphase][averaged]") {
+TEST_CASE("the averaged model's normal is always a unit vector, even where the mean vanishes",
+          "[narrowphase][averaged]") {
     std::mt19937 random(9);
     NarrowphaseUnderTest narrowphase("angle_sum", {{"contact", std::string("averaged")}});
     const Shape a = make_mesh("a", cone(12, 0.2, 3)), b = make_mesh("b", u_bar());

@@ -76,7 +76,8 @@ TEST_CASE("the angle sum errs where its epsilon fattens the triangle, and float 
     REQUIRE(judged == same);
     CHECK(wrong_narrow <= judged / 100);
     CHECK(wrong_wide > wrong_narrow);
-    const auto [wrong_float, again] = wrong_of("angle_sum", {{"epsilon", 1e-6}, {"precision", std::string("float")}}, 1500);
+    const auto [wrong_float, again] =
+        wrong_of("angle_sum", {{"epsilon", 1e-6}, {"precision", std::string("float")}}, 1500);
     CHECK(wrong_float > wrong_narrow);
 }
 

@@ -91,7 +91,9 @@ double maximum(Function&& f, double low, double high) {
 inline double longest_chord(const std::vector<HalfSpace>& planes, const Vec3& direction, const Vec3& start) {
     const Vec3 u = direction.unitOrthogonal(), v = direction.cross(u);
     return maximum(
-        [&](double x) { return maximum([&](double y) { return chord(planes, direction, start + x * u + y * v); }, -5, 5); },
+        [&](double x) {
+            return maximum([&](double y) { return chord(planes, direction, start + x * u + y * v); }, -5, 5);
+        },
         -5, 5);
 }
 

@@ -18,7 +18,8 @@ inline int orientation(const Point& a, const Point& b, const Point& c, const Poi
         m[1][k] = Int(c[k]) - a[k];
         m[2][k] = Int(d[k]) - a[k];
     }
-    const Int volume = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+    const Int volume = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                       m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
                        m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
     return (volume > 0) - (volume < 0);
 }

@@ -32,8 +32,9 @@ void reflect_all(World& world, const std::vector<Contact>& contacts) {
         const Contact& c = *fastest;
         const Vec3 turn_a = world.world_inverse_inertia(c.a) * c.arm_a.cross(c.normal);
         const Vec3 turn_b = world.world_inverse_inertia(c.b) * c.arm_b.cross(c.normal);
-        const double impulse = -2 * speed / (world.inverse_mass[c.a] + world.inverse_mass[c.b] +
-                                             c.normal.dot(turn_a.cross(c.arm_a) + turn_b.cross(c.arm_b)));
+        const double impulse = -2 * speed /
+                               (world.inverse_mass[c.a] + world.inverse_mass[c.b] +
+                                c.normal.dot(turn_a.cross(c.arm_a) + turn_b.cross(c.arm_b)));
         world.velocity[c.a] -= impulse * world.inverse_mass[c.a] * c.normal;
         world.velocity[c.b] += impulse * world.inverse_mass[c.b] * c.normal;
         world.angular_velocity[c.a] -= impulse * turn_a;
@@ -55,8 +56,9 @@ struct Clusters {
             contacts.push_back(contact_at(world, first, first + 1, random.normal(), random.direction()));
             contacts.push_back(contact_at(world, first + 1, first + 2, random.normal(), random.direction()));
         }
-        std::sort(contacts.begin(), contacts.end(),
-                  [](const Contact& c, const Contact& d) { return Pair{c.a, c.b} < Pair{d.a, d.b}; });
+        std::sort(contacts.begin(), contacts.end(), [](const Contact& c, const Contact& d) {
+            return Pair{c.a, c.b} < Pair{d.a, d.b};
+        });
     }
 };
 
@@ -116,8 +118,7 @@ TEST_CASE("A cradle passes on as many balls as hit it", "[impulse]") {
         CAPTURE(count, moving);
         World world = empty_world();
         std::vector<Contact> contacts;
-        for (int i = 0; i < count; ++i)
-            add_ball(world, Vec3(2 * i, 0, 0), i < moving ? Vec3(1, 0, 0) : Vec3(0, 0, 0));
+        for (int i = 0; i < count; ++i) add_ball(world, Vec3(2 * i, 0, 0), i < moving ? Vec3(1, 0, 0) : Vec3(0, 0, 0));
         for (int i = 0; i + 1 < count; ++i)
             contacts.push_back(contact_at(world, i, i + 1, Vec3(2 * i + 1, 0, 0), Vec3::UnitX()));
         ResponsePlugin impulse("impulse");

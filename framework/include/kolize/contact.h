@@ -20,16 +20,16 @@ KOLIZE_API const char* to_string(Detail);
 
 // One contact point. Rows of a step stand in canonical order: by pair (a, b), then by region, then by point.
 struct Contact {
-    std::uint32_t a = 0;       // body ids, a < b
+    std::uint32_t a = 0;  // body ids, a < b
     std::uint32_t b = 0;
-    std::uint32_t region = 0;  // numbers the contact regions of this pair from 0
-    std::uint32_t rule = 0;    // set by the framework: the response rule that takes the pair
+    std::uint32_t region = 0;    // numbers the contact regions of this pair from 0
+    std::uint32_t rule = 0;      // set by the framework: the response rule that takes the pair
     Vec3 normal = Vec3::Zero();  // unit, world axes, from body A to body B: B has to move along it to separate
     Vec3 arm_a = Vec3::Zero();   // contact point minus the centre of mass of A, world axes, m
     Vec3 arm_b = Vec3::Zero();   // the same point minus the centre of mass of B, world axes, m
-    double depth = 0;            // m, > 0: longest chord of the overlap along the normal (of two convex primitives: how far
-                                 // B has to move along it to separate)
-    double impulse = 0;          // written by the response: normal impulse on B, N s, >= 0
+    double depth = 0;    // m, > 0: longest chord of the overlap along the normal (of two convex primitives: how far
+                         // B has to move along it to separate)
+    double impulse = 0;  // written by the response: normal impulse on B, N s, >= 0
 };
 
 // What one narrowphase call gives. Cleared, never freed, between steps.

@@ -24,7 +24,7 @@ struct Bound {
 };
 
 struct Expectation {
-    std::string pipeline;  // as written; "" for the scene's own
+    std::string pipeline;                 // as written; "" for the scene's own
     std::filesystem::path pipeline_file;  // relative to the working directory
     std::vector<std::pair<std::string, std::string>> set;
     double time = 0;          // s; 0: see steps

@@ -36,10 +36,8 @@ public:
     virtual void warn(std::string_view message) = 0;
 
 protected:
-    using ChunkFunction = void (*)(void* context, std::size_t chunk, std::size_t begin,
-                                   std::size_t end);
-    virtual void run_chunks(std::size_t count, std::size_t grain, ChunkFunction function,
-                            void* context) = 0;
+    using ChunkFunction = void (*)(void* context, std::size_t chunk, std::size_t begin, std::size_t end);
+    virtual void run_chunks(std::size_t count, std::size_t grain, ChunkFunction function, void* context) = 0;
 };
 
 }  // namespace kolize

@@ -26,8 +26,8 @@ protected:
 // semi_implicit_euler  v += h a, then x += h v; omega kept constant in free rotation (no gyroscopic term)
 // momentum_euler       the thesis's: angular momentum kept, orientation by one explicit Euler step with normalisation;
 //                      kinetic energy grows at every step unless the body spins about a principal axis
-// pdmv4                preprocessed discrete Moser-Veselov, order 4 (Hairer & Vilmart, J. Phys. A 39 (2006) 13225), with
-//                      the exact parabola for gravity: energy and angular momentum kept to rounding
+// pdmv4                preprocessed discrete Moser-Veselov, order 4 (Hairer & Vilmart, J. Phys. A 39 (2006) 13225),
+//                      with the exact parabola for gravity: energy and angular momentum kept to rounding
 // Throws std::invalid_argument for another name.
 KOLIZE_API std::unique_ptr<Integrator> make_integrator(const std::string& name);
 KOLIZE_API const std::vector<std::string>& integrator_names();

@@ -6,9 +6,9 @@
 namespace kolize {
 
 struct MassProperties {
-    double volume = 0;                        // m^3
-    Vec3 center_of_mass = Vec3::Zero();       // in the frame of the input, m
-    Mat3 inertia_over_mass = Mat3::Zero();    // about the centre of mass, axes of the input, m^2
+    double volume = 0;                      // m^3
+    Vec3 center_of_mass = Vec3::Zero();     // in the frame of the input, m
+    Mat3 inertia_over_mass = Mat3::Zero();  // about the centre of mass, axes of the input, m^2
 };
 
 // Sums over tetrahedra from the first vertex of the first triangle, never from the origin of the frame: the error does
@@ -19,8 +19,8 @@ struct MassProperties {
 KOLIZE_API MassProperties mass_properties(const TriangleSoup& closed_surface);
 
 struct PrincipalFrame {
-    Vec3 moments = Vec3::Ones();     // principal moments over mass, m^2, in the order of the axes
-    Quat axes = Quat::Identity();    // principal frame to input axes; identity if the tensor is diagonal already
+    Vec3 moments = Vec3::Ones();   // principal moments over mass, m^2, in the order of the axes
+    Quat axes = Quat::Identity();  // principal frame to input axes; identity if the tensor is diagonal already
 };
 
 // Cyclic Jacobi iteration (Golub & Van Loan, Matrix Computations, 8.5): residual of a few ulp for any symmetric tensor.

@@ -26,17 +26,16 @@ struct TriangleSoup {
 // What is wrong with a soup as the surface of a solid. All false and zero: a closed, oriented, two-manifold surface.
 struct MeshDefects {
     bool empty = false;
-    std::size_t open_edges = 0;          // edges with one triangle only
-    std::size_t non_manifold_edges = 0;  // edges with three triangles or more
-    std::size_t misoriented_edges = 0;   // edges that both their triangles run through the same way
+    std::size_t open_edges = 0;            // edges with one triangle only
+    std::size_t non_manifold_edges = 0;    // edges with three triangles or more
+    std::size_t misoriented_edges = 0;     // edges that both their triangles run through the same way
     std::size_t degenerate_triangles = 0;  // a vertex twice, or no area
-    bool inverted = false;               // closed, but with the normals inward (negative volume) or with no volume
-    std::string first;                   // one phrase for the first defect: "edge 3-17 has one triangle (x.obj:12)";
-                                         // vertices and triangles count from 0
+    bool inverted = false;                 // closed, but with the normals inward (negative volume) or with no volume
+    std::string first;                     // one phrase for the first defect: "edge 3-17 has one triangle (x.obj:12)";
+                                           // vertices and triangles count from 0
 
     bool closed() const {
-        return !empty && !open_edges && !non_manifold_edges && !misoriented_edges && !inverted &&
-               !degenerate_triangles;
+        return !empty && !open_edges && !non_manifold_edges && !misoriented_edges && !inverted && !degenerate_triangles;
     }
 };
 

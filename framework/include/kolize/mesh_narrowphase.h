@@ -1,7 +1,7 @@
 // The framework's half of a narrowphase that tests triangles: everything but the triangles.
 //
-// Three independent choices make contacts between meshes: how candidate triangle pairs are found (the hierarchy walk, or
-// a plugin's own), the triangle-triangle test, and the contact model. A triangle-test plugin derives from
+// Three independent choices make contacts between meshes: how candidate triangle pairs are found (the hierarchy walk,
+// or a plugin's own), the triangle-triangle test, and the contact model. A triangle-test plugin derives from
 // TriangleNarrowphase and writes one function, on a batch of pairs.
 #pragma once
 
@@ -35,16 +35,19 @@ struct TriangleHit {
 struct TriangleHits {
     std::vector<TriangleHit> hits;
     std::uint64_t tests = 0;
-    void clear() { hits.clear(); tests = 0; }
+    void clear() {
+        hits.clear();
+        tests = 0;
+    }
 };
 
 struct MeshPair {
     const Mesh& a;
     const Mesh& b;
-    Transform b_to_a;        // body frame of B to body frame of A
+    Transform b_to_a;           // body frame of B to body frame of A
     std::uint32_t shape_a = 0;  // into World::shapes
     std::uint32_t shape_b = 0;
-    bool first_only = false;    // overlap is all that is asked: stop at the first hit
+    bool first_only = false;  // overlap is all that is asked: stop at the first hit
     bool want_segments = false;
 };
 

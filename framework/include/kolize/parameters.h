@@ -28,10 +28,10 @@ struct Parameter {
     std::string name;
     std::string unit;  // "" for a pure number or a choice
     std::string doc;
-    Value default_value;                // its alternative is the parameter's type
+    Value default_value;                   // its alternative is the parameter's type
     double min = -1.7976931348623157e308;  // inclusive; numbers only
     double max = 1.7976931348623157e308;
-    std::vector<std::string> choices;   // strings only; empty: anything
+    std::vector<std::string> choices;  // strings only; empty: anything
     std::function<void(Stage&, const Value&)> set;
     std::function<Value(const Stage&)> get;
 
@@ -53,7 +53,10 @@ struct ParameterList {
 class ParameterBuilder {
 public:
     explicit ParameterBuilder(Parameter& parameter) : parameter_(parameter) {}
-    ParameterBuilder& unit(std::string text) { parameter_.unit = std::move(text); return *this; }
+    ParameterBuilder& unit(std::string text) {
+        parameter_.unit = std::move(text);
+        return *this;
+    }
     ParameterBuilder& range(double min, double max) {
         parameter_.min = min;
         parameter_.max = max;
@@ -63,7 +66,10 @@ public:
         parameter_.choices = std::move(names);
         return *this;
     }
-    ParameterBuilder& doc(std::string text) { parameter_.doc = std::move(text); return *this; }
+    ParameterBuilder& doc(std::string text) {
+        parameter_.doc = std::move(text);
+        return *this;
+    }
 
 private:
     Parameter& parameter_;
@@ -84,9 +90,7 @@ public:
         parameter.set = [member](Stage& stage, const Value& value) {
             static_cast<T&>(stage).*member = static_cast<M>(std::get<Stored>(value));
         };
-        parameter.get = [member](const Stage& stage) {
-            return Value(Stored(static_cast<const T&>(stage).*member));
-        };
+        parameter.get = [member](const Stage& stage) { return Value(Stored(static_cast<const T&>(stage).*member)); };
         return ParameterBuilder(parameter);
     }
 

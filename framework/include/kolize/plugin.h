@@ -61,13 +61,32 @@ struct PluginDescriptor {
 // A fold of the sizes and offsets of the types that cross the boundary: catches stale plugins that kept the API number.
 constexpr std::uint64_t layout_hash() {
     std::uint64_t h = 14695981039346656037ull;
-    for (std::uint64_t size :
-         {sizeof(World), sizeof(Shape), sizeof(Mesh), sizeof(HierarchyNode), sizeof(Material), sizeof(Contact),
-          sizeof(Contacts), sizeof(Aabb), sizeof(Pair), sizeof(BroadphaseInput), sizeof(NarrowphaseInput),
-          sizeof(ResponseInput), sizeof(ResponseOutput), sizeof(Event), sizeof(Parameter), sizeof(Value),
-          sizeof(PluginDescriptor), sizeof(Capabilities), offsetof(PluginDescriptor, create),
-          offsetof(Contact, normal), offsetof(Contact, impulse), offsetof(HierarchyNode, first),
-          offsetof(Shape, mesh), offsetof(Shape, moments), offsetof(World, removed), offsetof(World, forces)})
+    for (std::uint64_t size : {sizeof(World),
+                               sizeof(Shape),
+                               sizeof(Mesh),
+                               sizeof(HierarchyNode),
+                               sizeof(Material),
+                               sizeof(Contact),
+                               sizeof(Contacts),
+                               sizeof(Aabb),
+                               sizeof(Pair),
+                               sizeof(BroadphaseInput),
+                               sizeof(NarrowphaseInput),
+                               sizeof(ResponseInput),
+                               sizeof(ResponseOutput),
+                               sizeof(Event),
+                               sizeof(Parameter),
+                               sizeof(Value),
+                               sizeof(PluginDescriptor),
+                               sizeof(Capabilities),
+                               offsetof(PluginDescriptor, create),
+                               offsetof(Contact, normal),
+                               offsetof(Contact, impulse),
+                               offsetof(HierarchyNode, first),
+                               offsetof(Shape, mesh),
+                               offsetof(Shape, moments),
+                               offsetof(World, removed),
+                               offsetof(World, forces)})
         h = (h ^ size) * 1099511628211ull;
     return h;
 }
@@ -75,7 +94,7 @@ constexpr std::uint64_t layout_hash() {
 namespace detail {
 template <class T>
 void declare(ParameterList& list) {
-    if constexpr (requires(Parameters<T>& p) { T::parameters(p); }) {
+    if constexpr (requires(Parameters<T> & p) { T::parameters(p); }) {
         const T defaults{};
         Parameters<T> parameters(list, defaults);
         T::parameters(parameters);
@@ -107,7 +126,6 @@ constexpr PluginDescriptor describe(const PluginText& text) {
 }  // namespace kolize
 
 // The one exported symbol. Constant-initialised: reading it runs no code of the plugin.
-#define KOLIZE_PLUGIN(Class, ...)                                                      \
-    extern "C" KOLIZE_API const kolize::PluginDescriptor kolize_plugin;                \
-    constinit const kolize::PluginDescriptor kolize_plugin =                           \
-        kolize::describe<Class>(kolize::PluginText{__VA_ARGS__});
+#define KOLIZE_PLUGIN(Class, ...)                                       \
+    extern "C" KOLIZE_API const kolize::PluginDescriptor kolize_plugin; \
+    constinit const kolize::PluginDescriptor kolize_plugin = kolize::describe<Class>(kolize::PluginText{__VA_ARGS__});

@@ -81,6 +81,6 @@ private:
 
 // The parameters of a stage as they are in force, for the echo in results.
 KOLIZE_API std::vector<std::pair<std::string, Value>> effective_settings(const LoadedPlugin& plugin,
-                                                                          const Stage& stage);
+                                                                         const Stage& stage);
 
 }  // namespace kolize

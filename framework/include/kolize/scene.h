@@ -28,12 +28,12 @@ struct ResponseRule {
 };
 
 struct StepConfig {
-    double dt = 1.0 / 240;         // s
+    double dt = 1.0 / 240;          // s
     std::string mode = "discrete";  // discrete | rollback | bisection
     std::string integrator = "pdmv4";
-    double tolerance = 1e-3;   // bisection: the impact time is found to this share of dt
-    int max_impacts = 64;      // bisection: impacts resolved in one step before the rest is taken discretely
-    double time = 10;          // s; how long `kolize run` goes on when not told
+    double tolerance = 1e-3;  // bisection: the impact time is found to this share of dt
+    int max_impacts = 64;     // bisection: impacts resolved in one step before the rest is taken discretely
+    double time = 10;         // s; how long `kolize run` goes on when not told
 };
 
 struct PipelineConfig {

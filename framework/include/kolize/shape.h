@@ -17,14 +17,14 @@ KOLIZE_API const char* to_string(ShapeKind);
 struct Shape {
     std::string name;
     ShapeKind kind = ShapeKind::sphere;
-    double radius = 0;                      // sphere: m. Every bounded kind: largest distance from the body origin, m
-    Vec3 half_extents = Vec3::Zero();       // box, m
-    Vec3 normal = Vec3::UnitY();            // half_space: unit, points out of the solid
-    std::shared_ptr<const Mesh> mesh;       // mesh; for a box: its twelve triangles
-    Aabb bounds;                            // in the body frame; infinite for a half_space
-    double volume = 0;                      // m^3; infinite for a half_space
-    Vec3 moments = Vec3::Zero();            // principal moments over mass, m^2
-    Vec3 center_in_model = Vec3::Zero();    // centre of mass in the model frame, m
+    double radius = 0;                    // sphere: m. Every bounded kind: largest distance from the body origin, m
+    Vec3 half_extents = Vec3::Zero();     // box, m
+    Vec3 normal = Vec3::UnitY();          // half_space: unit, points out of the solid
+    std::shared_ptr<const Mesh> mesh;     // mesh; for a box: its twelve triangles
+    Aabb bounds;                          // in the body frame; infinite for a half_space
+    double volume = 0;                    // m^3; infinite for a half_space
+    Vec3 moments = Vec3::Zero();          // principal moments over mass, m^2
+    Vec3 center_in_model = Vec3::Zero();  // centre of mass in the model frame, m
     Quat body_to_model = Quat::Identity();
 };
 

@@ -45,8 +45,9 @@ struct EffectiveStage {
 
 class KOLIZE_API Simulation {
 public:
-    // Makes the stages and negotiates: throws Error, before any step, in a sentence that names a plugin that would do, if a
-    // response needs more than the narrowphase gives or a shape is not taken. `expected_steps` sizes the sample buffers.
+    // Makes the stages and negotiates: throws Error, before any step, in a sentence that names a plugin that would do,
+    // if a response needs more than the narrowphase gives or a shape is not taken. `expected_steps` sizes the sample
+    // buffers.
     Simulation(const Scene& scene, const PluginLibrary& plugins, Host& host, std::uint64_t expected_steps);
     ~Simulation();
 
@@ -54,16 +55,16 @@ public:
     void step();
 
     const World& world() const;
-    const std::vector<Pair>& pairs() const;        // of the last step, canonical order, body ids
-    const Contacts& contacts() const;              // of the last step
-    const std::vector<Event>& events() const;      // of the last step
+    const std::vector<Pair>& pairs() const;    // of the last step, canonical order, body ids
+    const Contacts& contacts() const;          // of the last step
+    const std::vector<Event>& events() const;  // of the last step
     RunResult result() const;
-    std::uint64_t state_hash() const;              // FNV-1a over the bits of all bodies' state
+    std::uint64_t state_hash() const;  // FNV-1a over the bits of all bodies' state
     EffectiveStage broadphase() const;
     EffectiveStage narrowphase() const;
     std::vector<EffectiveStage> responses() const;
     const StepConfig& step_config() const;
-    std::string walls() const;                     // what rooms were made of: half_space, box or mesh
+    std::string walls() const;  // what rooms were made of: half_space, box or mesh
 
 private:
     struct State;

@@ -21,9 +21,9 @@ struct BodyDescription {
     std::uint32_t material = 0;
     std::string kind = "body";  // free word that response rules refer to
     bool is_static = false;
-    double mass = 0;  // kg; 0: density times volume
-    Vec3 position = Vec3::Zero();  // of the model frame's origin, m
-    Quat orientation = Quat::Identity();  // model frame to world
+    double mass = 0;                       // kg; 0: density times volume
+    Vec3 position = Vec3::Zero();          // of the model frame's origin, m
+    Quat orientation = Quat::Identity();   // model frame to world
     Vec3 velocity = Vec3::Zero();          // of the centre of mass, m/s
     Vec3 angular_velocity = Vec3::Zero();  // world axes, rad/s
     Vec3 constant_force = Vec3::Zero();    // world axes, at the centre of mass, N
@@ -40,15 +40,15 @@ struct KOLIZE_API World {
     std::vector<Vec3> angular_velocity;  // world axes, rad/s
 
     // Constants of body i.
-    std::vector<double> inverse_mass;          // 1/kg; 0 for a static body
-    std::vector<Vec3> inverse_inertia;         // principal, body frame, 1/(kg m^2); 0 for a static body
-    std::vector<Vec3> constant_force;          // world axes, N
-    std::vector<Vec3> constant_torque;         // world axes, N m
-    std::vector<std::uint32_t> shape;          // into shapes
-    std::vector<std::uint32_t> material;       // into materials
-    std::vector<std::uint32_t> kind;           // into kinds
-    std::vector<std::uint8_t> is_static;       // 1: never moves
-    std::vector<std::uint8_t> removed;         // 1: taken out by a response; takes part in nothing any more
+    std::vector<double> inverse_mass;     // 1/kg; 0 for a static body
+    std::vector<Vec3> inverse_inertia;    // principal, body frame, 1/(kg m^2); 0 for a static body
+    std::vector<Vec3> constant_force;     // world axes, N
+    std::vector<Vec3> constant_torque;    // world axes, N m
+    std::vector<std::uint32_t> shape;     // into shapes
+    std::vector<std::uint32_t> material;  // into materials
+    std::vector<std::uint32_t> kind;      // into kinds
+    std::vector<std::uint8_t> is_static;  // 1: never moves
+    std::vector<std::uint8_t> removed;    // 1: taken out by a response; takes part in nothing any more
     std::vector<std::string> name;
 
     std::vector<Shape> shapes;
@@ -62,9 +62,7 @@ struct KOLIZE_API World {
     std::uint32_t add(const BodyDescription& body);
 
     const Shape& shape_of(std::uint32_t body) const { return shapes[shape[body]]; }
-    Transform pose(std::uint32_t body) const {
-        return {orientation[body].toRotationMatrix(), position[body]};
-    }
+    Transform pose(std::uint32_t body) const { return {orientation[body].toRotationMatrix(), position[body]}; }
     // Placement of the body's model frame: what scene files and printed results speak of.
     Vec3 model_position(std::uint32_t body) const;
     Quat model_orientation(std::uint32_t body) const;

@@ -71,8 +71,8 @@ BoxScene coincident(std::uint64_t seed) {
     return make_boxes(40, [&](std::size_t) { return box_at(corner, Vec3(1, 2, 3)); });
 }
 
-// Every box of a lattice touches its 26 neighbours in a face, an edge or a corner. A third is exact in no base 2 number:
-// neighbours still share the very same coordinate.
+// Every box of a lattice touches its 26 neighbours in a face, an edge or a corner. A third is exact in no base 2
+// number: neighbours still share the very same coordinate.
 BoxScene touching(std::uint64_t) {
     const auto line = [](std::size_t i) { return static_cast<double>(i) / 3; };
     return make_boxes(216, [&](std::size_t row) {

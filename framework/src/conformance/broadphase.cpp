@@ -21,7 +21,8 @@ std::string fault(const BoxScene& scene, std::vector<Pair> pairs) {
     for (const Pair& pair : pairs) {
         if (pair.a >= pair.b) return "pair " + to_text(pair) + " is not in order a < b";
         if (pair.b >= scene.bounds.size()) return "pair " + to_text(pair) + " names a row that does not exist";
-        if (scene.is_static[pair.a] && scene.is_static[pair.b]) return "pair " + to_text(pair) + " is of two static rows";
+        if (scene.is_static[pair.a] && scene.is_static[pair.b])
+            return "pair " + to_text(pair) + " is of two static rows";
     }
     if (const auto twice = std::adjacent_find(pairs.begin(), pairs.end()); twice != pairs.end())
         return "pair " + to_text(*twice) + " is reported twice";

@@ -65,8 +65,9 @@ ImpactScene random_impacts(std::size_t count, Detail detail, double restitution,
         scene.contacts.push_back(random_contact(dice, world, a, b, detail));
         scene.hit.push_back(static_cast<std::uint8_t>(1 + dice.below(3)));
     }
-    std::stable_sort(scene.contacts.begin(), scene.contacts.end(),
-                     [](const Contact& c, const Contact& d) { return Pair{c.a, c.b} < Pair{d.a, d.b}; });
+    std::stable_sort(scene.contacts.begin(), scene.contacts.end(), [](const Contact& c, const Contact& d) {
+        return Pair{c.a, c.b} < Pair{d.a, d.b};
+    });
     return scene;
 }
 
@@ -94,8 +95,9 @@ std::string to_text(const ImpactScene& scene) {
         text << "contact {.a = " << c.a << ", .b = " << c.b << ", .normal = " << c.normal.format(row)
              << ", .arm_a = " << c.arm_a.format(row) << ", .arm_b = " << c.arm_b.format(row) << "} ";
         for (const std::uint32_t body : {c.a, c.b})
-            text << "body " << body << (scene.world.is_static[body] ? " static" : "") << " {.inverse_mass = "
-                 << scene.world.inverse_mass[body] << ", .velocity = " << scene.world.velocity[body].format(row)
+            text << "body " << body << (scene.world.is_static[body] ? " static" : "")
+                 << " {.inverse_mass = " << scene.world.inverse_mass[body]
+                 << ", .velocity = " << scene.world.velocity[body].format(row)
                  << ", .angular_velocity = " << scene.world.angular_velocity[body].format(row) << "} ";
     }
     return text.str();

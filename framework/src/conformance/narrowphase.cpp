@@ -11,7 +11,9 @@ namespace {
 
 constexpr double tolerance = 1e-9;  // m, rad: for solids of size 1 seen from another side
 
-[[noreturn]] void violate(const std::string& what, const World& world) { throw Violation(what + ": " + to_text(world)); }
+[[noreturn]] void violate(const std::string& what, const World& world) {
+    throw Violation(what + ": " + to_text(world));
+}
 
 bool same_bits(const std::vector<Contact>& a, const std::vector<Contact>& b) {
     if (a.size() != b.size()) return false;
@@ -71,12 +73,14 @@ public:
             const auto regions = find_pair(world, Detail::normal).rows;
             for (std::size_t i = 0; i < regions.size(); ++i)
                 if (regions[i].region != i) violate("normal asked for, and not one row for each region in turn", world);
-            if (regions.empty() != (overlaps == 0)) violate("overlap and normal disagree on whether the pair touches", world);
+            if (regions.empty() != (overlaps == 0))
+                violate("overlap and normal disagree on whether the pair touches", world);
             if (gives() == Detail::normal) return;
             std::vector<int> points(regions.size() + 1, 0);
             for (const Contact& c : find_pair(world, Detail::manifold).rows)
                 if (c.region >= regions.size() || ++points[c.region] > 4)
-                    violate("manifold asked for, and other regions than for normal, or more than four points in one", world);
+                    violate("manifold asked for, and other regions than for normal, or more than four points in one",
+                            world);
         });
     }
 
@@ -105,7 +109,8 @@ public:
                 c.arm_b = turn * c.arm_b;
             }
             const auto moved = find_pair(placed_elsewhere(world, turn, Vec3(3, -2, 1)), detail).rows;
-            if (!same_geometry(rows, moved, tolerance)) violate("turning and moving the whole gives other contacts", world);
+            if (!same_geometry(rows, moved, tolerance))
+                violate("turning and moving the whole gives other contacts", world);
         });
     }
 

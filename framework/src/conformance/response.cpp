@@ -189,9 +189,7 @@ public:
     }
 
 private:
-    StagePtr<Response> make(Host& host) const {
-        return library_.make<Response>(default_config(plugin_), host);
-    }
+    StagePtr<Response> make(Host& host) const { return library_.make<Response>(default_config(plugin_), host); }
 
     ImpactScene impacts(std::size_t count, double restitution, std::uint64_t seed) const {
         return random_impacts(count, plugin_.descriptor->capabilities.uses, restitution, seed);

@@ -10,9 +10,9 @@ namespace {
 
 const char* word(Check::Outcome outcome) {
     switch (outcome) {
-        case Check::Outcome::pass: return "pass";
-        case Check::Outcome::fail: return "FAIL";
-        case Check::Outcome::skip: return "skip";
+    case Check::Outcome::pass: return "pass";
+    case Check::Outcome::fail: return "FAIL";
+    case Check::Outcome::skip: return "skip";
     }
     return "";
 }
@@ -38,9 +38,9 @@ void Suite::run(const char* name, const std::function<void()>& check) {
 std::vector<Check> check_plugin(const PluginLibrary& library, const LoadedPlugin& plugin,
                                 const ConformanceOptions& options) {
     switch (plugin.descriptor->stage) {
-        case StageKind::broadphase: return check_broadphase(library, plugin, options);
-        case StageKind::narrowphase: return check_narrowphase(library, plugin, options);
-        case StageKind::response: return check_response(library, plugin, options);
+    case StageKind::broadphase: return check_broadphase(library, plugin, options);
+    case StageKind::narrowphase: return check_narrowphase(library, plugin, options);
+    case StageKind::response: return check_response(library, plugin, options);
     }
     throw std::invalid_argument("no conformance suite for this stage kind");
 }
@@ -70,7 +70,8 @@ void print_matrix(std::ostream& out, const std::vector<ConformanceReport>& repor
     for (const ConformanceReport& report : reports)
         for (const Check& check : report.checks)
             if (check.outcome != Check::Outcome::pass)
-                out << report.plugin << ", " << check.name << ": " << word(check.outcome) << ": " << check.detail << '\n';
+                out << report.plugin << ", " << check.name << ": " << word(check.outcome) << ": " << check.detail
+                    << '\n';
 }
 
 }  // namespace kolize

@@ -123,14 +123,16 @@ std::vector<Point> world_vertices(const World& world, std::uint32_t body) {
 
 Real volume(const Point& a, const Point& b, const Point& c, const Point& d) { return (b - a).cross(c - a).dot(d - a); }
 
-Overlap edges_through_triangles(const Mesh& a, const std::vector<Point>& pa, const Mesh& b, const std::vector<Point>& pb) {
+Overlap edges_through_triangles(const Mesh& a, const std::vector<Point>& pa, const Mesh& b,
+                                const std::vector<Point>& pb) {
     bool close = false;
     for (const Edge& edge : a.edges)
         for (const Triangle& t : b.triangles) {
             const Point &p = pa[edge.v0], &q = pa[edge.v1], &u = pb[t[0]], &v = pb[t[1]], &w = pb[t[2]];
             const Real above = volume(u, v, w, p), below = volume(u, v, w, q);
             const Real s[3] = {volume(p, q, u, v), volume(p, q, v, w), volume(p, q, w, u)};
-            const Real least = std::min({std::abs(above), std::abs(below), std::abs(s[0]), std::abs(s[1]), std::abs(s[2])});
+            const Real least =
+                std::min({std::abs(above), std::abs(below), std::abs(s[0]), std::abs(s[1]), std::abs(s[2])});
             const bool through = (above > 0) != (below > 0) && (s[0] > 0) == (s[1] > 0) && (s[1] > 0) == (s[2] > 0);
             if (least < too_small)
                 close = true;
@@ -148,7 +150,9 @@ Overlap meshes_overlap(const World& world) {
 }
 
 Overlap by_gap(double gap) {
-    return std::abs(gap) < double(too_small) ? Overlap::too_close_to_tell : gap < 0 ? Overlap::overlapping : Overlap::apart;
+    return std::abs(gap) < double(too_small) ? Overlap::too_close_to_tell
+           : gap < 0                         ? Overlap::overlapping
+                                             : Overlap::apart;
 }
 
 Overlap sphere_overlaps(const World& world, std::uint32_t sphere, std::uint32_t other) {

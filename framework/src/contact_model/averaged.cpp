@@ -9,8 +9,8 @@ namespace {
 
 bool before(const Vec3& p, const Vec3& q) { return std::tie(p[0], p[1], p[2]) < std::tie(q[0], q[1], q[2]); }
 
-// A crossing of an edge with a face is found once from each of the two triangles along the edge; the thesis keeps what was
-// found twice, comparing bits.
+// A crossing of an edge with a face is found once from each of the two triangles along the edge; the thesis keeps what
+// was found twice, comparing bits.
 Vec3 mean_point(std::span<const TriangleHit> hits, std::vector<Vec3>& points) {
     points.clear();
     for (const TriangleHit& hit : hits) {
@@ -51,7 +51,8 @@ Side touched(const MeshPair& pair, bool of_a, std::span<const TriangleHit> hits,
 }
 
 // How far the touched triangles of the other body reach behind the contact plane.
-double depth_behind(const MeshPair& pair, bool of_a, std::span<const TriangleHit> hits, const Vec3& outward, const Vec3& point) {
+double depth_behind(const MeshPair& pair, bool of_a, std::span<const TriangleHit> hits, const Vec3& outward,
+                    const Vec3& point) {
     double depth = 0;
     for (const TriangleHit& hit : hits)
         for (int k = 0; k < 3; ++k) {
@@ -72,7 +73,7 @@ void averaged_region(const MeshPair& pair, std::span<const TriangleHit> hits, bo
     const Vec3 sum = take_a ? a.normal_sum : Vec3(-b.normal_sum);
     const double norm = sum.norm();
     const Vec3 centers = pair.b_to_a.translation;
-    const Vec3 normal = norm > 1e-9                ? Vec3(sum / norm)
+    const Vec3 normal = norm > 1e-9                 ? Vec3(sum / norm)
                         : centers.squaredNorm() > 0 ? Vec3(centers.normalized())
                                                     : Vec3::UnitX();
     const Vec3 point = mean_point(hits, scratch.points);

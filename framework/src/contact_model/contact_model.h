@@ -36,9 +36,9 @@ struct Crossing {
 };
 
 struct ContourSegment {
-    Crossing from, to;          // oriented along normal_A x normal_B
+    Crossing from, to;  // oriented along normal_A x normal_B
     std::uint32_t triangle_a = 0, triangle_b = 0;
-    std::uint32_t parent = 0;   // union-find; afterwards the first segment of the region
+    std::uint32_t parent = 0;  // union-find; afterwards the first segment of the region
 };
 
 // The part of one mesh that lies inside the other behind one region of the curve.
@@ -62,21 +62,21 @@ struct ContourScratch {
 
 // One region per connected part of the intersection curve. For closed meshes in general position (no crossing point
 // exactly on an edge or vertex of the other mesh).
-// Normal: direction of the vector area sum 1/2 p x q of the oriented curve, which is the outward area of A's surface inside B
-// and the gradient of the overlap volume under translation (divergence theorem; Faure, Allard et al. 2008-2010).
-// Depth: see overlap_depth.
+// Normal: direction of the vector area sum 1/2 p x q of the oriented curve, which is the outward area of A's surface
+// inside B and the gradient of the overlap volume under translation (divergence theorem; Faure, Allard et al.
+// 2008-2010). Depth: see overlap_depth.
 void contour_regions(const MeshPair& pair, std::span<const TriangleHit> hits, ContourScratch& scratch,
                      std::vector<ContactRegion>& regions);
 
-// The longest chord of the overlap along the normal, between the inner patches of both surfaces. Its ends lie at a vertex
-// of one patch over a triangle of the other, or where two edges cross in the view along the normal. Exact where
-// each surface bounds the overlap from one side, an estimate in deep or pierced overlaps; of large patches only the vertices
-// that reach farthest are tried.
+// The longest chord of the overlap along the normal, between the inner patches of both surfaces. Its ends lie at a
+// vertex of one patch over a triangle of the other, or where two edges cross in the view along the normal. Exact where
+// each surface bounds the overlap from one side, an estimate in deep or pierced overlaps; of large patches only the
+// vertices that reach farthest are tried.
 double overlap_depth(const MeshPair& pair, std::uint32_t region, const Vec3& normal, ContourScratch& scratch);
 
 // The baseline of the source thesis: one contact whatever the number of places. Point: mean of the intersection points
-// that two triangle pairs found bitwise alike (of all points, if none was). Normal: mean of the triangle normals of the body with
-// fewer intersecting triangles, or of the static body. Where that mean vanishes the line of centres is taken.
+// that two triangle pairs found bitwise alike (of all points, if none was). Normal: mean of the triangle normals of the
+// body with fewer intersecting triangles, or of the static body. Where that mean vanishes the line of centres is taken.
 void averaged_region(const MeshPair& pair, std::span<const TriangleHit> hits, bool a_is_static, bool b_is_static,
                      ContourScratch& scratch, std::vector<ContactRegion>& regions);
 

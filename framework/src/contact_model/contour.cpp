@@ -6,8 +6,8 @@ namespace kolize {
 
 namespace {
 
-// Everything that decides how two triangles cross is the sign of a determinant of an edge and an edge, or a vertex and a
-// triangle, always computed from the same operands in the same order. Neighbouring triangle pairs therefore see the
+// Everything that decides how two triangles cross is the sign of a determinant of an edge and an edge, or a vertex and
+// a triangle, always computed from the same operands in the same order. Neighbouring triangle pairs therefore see the
 // same signs, and a closed mesh leaves closed curves. One rule for zero everywhere: > 0 against <= 0.
 class CrossingTriangles {
 public:
@@ -95,8 +95,8 @@ private:
 
     const MeshPair& pair_;
     std::uint32_t triangle_a_, triangle_b_;
-    Vec3 a_[3], b_[3];                   // corners, frame of A
-    double height_a_[3], height_b_[3];   // over the plane of the other triangle, scaled by twice its area
+    Vec3 a_[3], b_[3];                  // corners, frame of A
+    double height_a_[3], height_b_[3];  // over the plane of the other triangle, scaled by twice its area
     OrderedEdge edge_a_[3], edge_b_[3];
 };
 
@@ -192,7 +192,8 @@ ContactRegion make_region(const MeshPair& pair, std::uint32_t region, const Curv
 }  // namespace
 
 void ContourScratch::reserve() {
-    constexpr std::size_t usual = 512;  // triangle pairs of one mesh pair; more is possible, it only costs an allocation
+    constexpr std::size_t usual =
+        512;  // triangle pairs of one mesh pair; more is possible, it only costs an allocation
     segments.reserve(usual);
     ends.reserve(2 * usual);
     points.reserve(2 * usual);

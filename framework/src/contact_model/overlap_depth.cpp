@@ -103,7 +103,8 @@ double edge_chords(const MeshPair& pair, const View& view, const InnerPatch& a, 
             const double determinant = cross(d, e);
             if (determinant == 0) continue;
             const double s = cross(q - p, e) / determinant, t = cross(q - p, d) / determinant;
-            if (s >= 0 && s <= 1 && t >= 0 && t <= 1) longest = std::max(longest, (p[2] + s * d[2]) - (q[2] + t * e[2]));
+            if (s >= 0 && s <= 1 && t >= 0 && t <= 1)
+                longest = std::max(longest, (p[2] + s * d[2]) - (q[2] + t * e[2]));
         }
     }
     return longest;

@@ -22,8 +22,8 @@ std::uint32_t read_corner(Scanner& in, std::string_view word, std::size_t vertic
     if (number == 0) in.fail("a face names vertex 0, but vertices count from 1");
     const std::int64_t index = number > 0 ? number - 1 : number + static_cast<std::int64_t>(vertices_so_far);
     if (index < 0 || index >= 0xffffffff)
-        in.fail("a face names vertex " + std::to_string(number) + ", but there are " +
-                std::to_string(vertices_so_far) + " so far");
+        in.fail("a face names vertex " + std::to_string(number) + ", but there are " + std::to_string(vertices_so_far) +
+                " so far");
     return static_cast<std::uint32_t>(index);
 }
 

@@ -33,19 +33,20 @@ private:
 class BinaryValues {
 public:
     BinaryValues(const MeshFile& file, const PlyHeader& header)
-        : file_(file), at_(file.bytes.size() - header.body.size()),
+        : file_(file),
+          at_(file.bytes.size() - header.body.size()),
           reverse_((header.encoding == PlyEncoding::big_endian) == (std::endian::native == std::endian::little)) {}
 
     double next(PlyScalar type) {
         switch (type) {
-            case PlyScalar::int8: return take<std::int8_t>();
-            case PlyScalar::uint8: return take<std::uint8_t>();
-            case PlyScalar::int16: return take<std::int16_t>();
-            case PlyScalar::uint16: return take<std::uint16_t>();
-            case PlyScalar::int32: return take<std::int32_t>();
-            case PlyScalar::uint32: return take<std::uint32_t>();
-            case PlyScalar::float32: return take<float>();
-            case PlyScalar::float64: return take<double>();
+        case PlyScalar::int8: return take<std::int8_t>();
+        case PlyScalar::uint8: return take<std::uint8_t>();
+        case PlyScalar::int16: return take<std::int16_t>();
+        case PlyScalar::uint16: return take<std::uint16_t>();
+        case PlyScalar::int32: return take<std::int32_t>();
+        case PlyScalar::uint32: return take<std::uint32_t>();
+        case PlyScalar::float32: return take<float>();
+        case PlyScalar::float64: return take<double>();
         }
         return 0;
     }
@@ -129,8 +130,7 @@ private:
     void read_faces(const PlyElement& element) {
         bool singular = false;
         for (const PlyProperty& property : element.properties) singular |= property.name == "vertex_index";
-        const std::size_t column =
-            element.require_property(file_, singular ? "vertex_index" : "vertex_indices", true);
+        const std::size_t column = element.require_property(file_, singular ? "vertex_index" : "vertex_indices", true);
         for (std::uint64_t row = 0; row < element.count; ++row)
             for (std::size_t i = 0; i < element.properties.size(); ++i) {
                 read(element.properties[i]);

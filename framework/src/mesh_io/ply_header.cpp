@@ -76,8 +76,7 @@ PlyHeader read_ply_header(const MeshFile& file) {
         throw Error(SourceLocation{file.name, 1}, "a PLY file begins with the word ply");
     const std::size_t end = file.bytes.find("\nend_header");
     const std::size_t body = file.bytes.find('\n', end == std::string_view::npos ? end : end + 1);
-    if (body == std::string_view::npos)
-        throw Error(SourceLocation{file.name}, "the header has no line 'end_header'");
+    if (body == std::string_view::npos) throw Error(SourceLocation{file.name}, "the header has no line 'end_header'");
     PlyHeader header;
     Scanner in(file, file.bytes.substr(0, end + 1), Layout::lines);
     for (; !in.at_end(); in.skip_line()) read_statement(in, header);

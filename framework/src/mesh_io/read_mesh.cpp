@@ -28,8 +28,7 @@ std::string shortest_text(double number) {
 }
 
 void add_fan(TriangleSoup& soup, std::span<const std::uint32_t> corners) {
-    for (std::size_t k = 2; k < corners.size(); ++k)
-        soup.triangles.push_back({corners[0], corners[k - 1], corners[k]});
+    for (std::size_t k = 2; k < corners.size(); ++k) soup.triangles.push_back({corners[0], corners[k - 1], corners[k]});
 }
 
 namespace {

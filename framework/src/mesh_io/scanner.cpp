@@ -61,7 +61,8 @@ std::string_view Scanner::word() {
 
 void Scanner::skip_line() {
     if (layout_ == Layout::continued_lines)
-        while (!word().empty()) {}  // to the end of the last line that continues this one
+        while (!word().empty()) {
+        }  // to the end of the last line that continues this one
     position_ = std::min(text_.find('\n', position_), text_.size());
     if (at_end()) return;
     ++position_;

@@ -117,10 +117,9 @@ TriangleSoup read_stl(const MeshFile& file) {
     const bool binary = is_binary_stl(file.bytes);
     if (!binary && file.bytes.find('\0') != std::string_view::npos) {
         const std::size_t count = file.bytes.size() < header_size ? 0 : little_endian(&file.bytes[80]);
-        throw Error(SourceLocation{file.name},
-                    "a binary STL file of " + std::to_string(count) + " triangles takes " +
-                        std::to_string(header_size + triangle_size * count) + " bytes, this one has " +
-                        std::to_string(file.bytes.size()));
+        throw Error(SourceLocation{file.name}, "a binary STL file of " + std::to_string(count) + " triangles takes " +
+                                                   std::to_string(header_size + triangle_size * count) +
+                                                   " bytes, this one has " + std::to_string(file.bytes.size()));
     }
     TriangleSoup soup = binary ? read_binary(file) : read_text(file);
     soup.file = file.name;

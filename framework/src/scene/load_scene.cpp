@@ -7,7 +7,7 @@ namespace {
 
 using namespace config;
 
-const std::vector<std::string> scene_tables = {"schema", "world",       "step",     "material", "shape", "body",
+const std::vector<std::string> scene_tables = {"schema", "world",      "step",        "material", "shape", "body",
                                                "room",   "broadphase", "narrowphase", "response", "render"};
 
 void require_known_tables(const toml::table& config) {

@@ -66,8 +66,8 @@ private:
         for (Vec3& vertex : soup.vertices) vertex *= scale;
         const std::string mesh = "mesh '" + file.string() + "' ";
         if (const MeshDefects defects = inspect(soup); !defects.closed())
-            throw Error(reader.where("file"), mesh + main_defect(defects) +
-                                                  (defects.first.empty() ? "" : ": " + defects.first));
+            throw Error(reader.where("file"),
+                        mesh + main_defect(defects) + (defects.first.empty() ? "" : ": " + defects.first));
         try {
             return make_mesh("", soup);
         } catch (const std::invalid_argument& error) {
