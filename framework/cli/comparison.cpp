@@ -49,7 +49,8 @@ bool can_be_ranked(const Variant& variant) {
 bool beats(const Variant& winner, const Variant& loser) {
     const double fast = winner.summary.step.median_us, slow = loser.summary.step.median_us;
     const auto drift = [](const Variant& v) { return std::max(v.summary.energy_drift, drift_floor); };
-    return fast < slow * (1 - time_noise) && drift(winner) <= drift(loser);
+    return (fast < slow * (1 - time_noise) && drift(winner) <= drift(loser)) ||
+           (fast <= slow && drift(winner) < drift(loser));
 }
 
 RunResult run_once(const Variant& variant, const PluginLibrary& plugins, Host& host) {

@@ -46,6 +46,7 @@ void print_result(const RunResult& result) {
 int run_scene(const RunOptions& options, const PluginLibrary& plugins, Host& host) {
     const Scene scene =
         load_scene(options.scene, {options.pipeline, parse_settings(options.set), plugin_defaults()}, plugins);
+    for (const std::string& warning : scene.warnings) host.warn(warning);
     const std::uint64_t steps = options.length.count(scene.pipeline.step.dt, scene.pipeline.step.time);
     Simulation simulation(scene, plugins, host, steps);
     {

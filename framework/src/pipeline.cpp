@@ -39,7 +39,8 @@ Pipeline::Pipeline(const Scene& scene, const PluginLibrary& plugins, Host& host,
                          {},
                          {}});
     try {
-        walls = wall_kind(scene.pipeline.walls, narrowphase_plugin->descriptor->capabilities.shape_kinds);
+        walls = wall_kind(scene.pipeline.walls, narrowphase_plugin->descriptor->capabilities.shape_kinds,
+                          scene.rooms.size());
     } catch (const std::invalid_argument& e) {
         if (!scene.rooms.empty())
             throw Error(scene.pipeline.narrowphase.where,

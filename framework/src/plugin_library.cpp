@@ -122,7 +122,7 @@ PluginLibrary::PluginLibrary(std::vector<fs::path> folders) : folders_(without_r
 
 std::vector<fs::path> PluginLibrary::search_path(const std::vector<fs::path>& options, const fs::path& scene_folder) {
     std::vector<fs::path> folders = options;
-    folders.push_back(scene_folder);
+    folders.push_back(scene_folder.empty() ? fs::path(".") : scene_folder);
     if (const char* variable = std::getenv("KOLIZE_PLUGIN_PATH")) {
         std::istringstream entries(variable);
         for (std::string entry; std::getline(entries, entry, ':');) folders.push_back(entry);

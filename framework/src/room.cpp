@@ -4,9 +4,12 @@
 
 namespace kolize {
 
-ShapeKind wall_kind(const std::string& wanted, std::uint32_t shape_kinds) {
-    for (const ShapeKind kind : {ShapeKind::half_space, ShapeKind::box, ShapeKind::mesh})
-        if ((shape_kinds & bit(kind)) && (wanted == "auto" || wanted == to_string(kind))) return kind;
+ShapeKind wall_kind(const std::string& wanted, std::uint32_t shape_kinds, std::size_t rooms) {
+    for (const ShapeKind kind : {ShapeKind::half_space, ShapeKind::box, ShapeKind::mesh}) {
+        const bool fits_all_rooms = kind != ShapeKind::half_space || rooms < 2;
+        if ((shape_kinds & bit(kind)) && ((wanted == "auto" && fits_all_rooms) || wanted == to_string(kind)))
+            return kind;
+    }
     throw std::invalid_argument("takes no walls made of " + (wanted == "auto" ? "half_space, box or mesh" : wanted));
 }
 

@@ -6,8 +6,9 @@
 namespace kolize {
 
 // What the walls are made of: "half_space", "box" or "mesh". `wanted` is [narrowphase] walls; "auto" takes the first of
-// these that the narrowphase handles. Throws std::invalid_argument if it handles none, or not the wanted one.
-ShapeKind wall_kind(const std::string& wanted, std::uint32_t shape_kinds);
+// these that the narrowphase handles; half-spaces only around a single room, since they fill all space outside it.
+// Throws std::invalid_argument if it handles none, or not the wanted one.
+ShapeKind wall_kind(const std::string& wanted, std::uint32_t shape_kinds, std::size_t rooms);
 
 // Adds one static body of kind "wall" for each side that is not open. Box and mesh walls overlap at the corners.
 void add_walls(World& world, const Room& room, ShapeKind kind, std::size_t room_number);

@@ -93,3 +93,12 @@ TEST_CASE("a wall shape that the narrowphase does not take is refused by name", 
         CHECK(Simulation(scene, plugins(), *host, 1).walls() == walls);
     }
 }
+
+TEST_CASE("walls that are left to choose are half-spaces around one room, and boxes around several", "[negotiation]") {
+    Scene scene = two_balls();
+    const auto host = make_host(1);
+    scene.rooms.push_back(room_of(3));
+    CHECK(Simulation(scene, plugins(), *host, 1).walls() == "half_space");
+    scene.rooms.push_back(room_of(2));
+    CHECK(Simulation(scene, plugins(), *host, 1).walls() == "box");
+}

@@ -161,6 +161,8 @@ iterations = 10
     CHECK(world.kinds[world.kind[0]] == "missile");
     CHECK(world.materials[world.material[0]].name == "rubber");
     CHECK(world.materials[world.material[0]].friction == 0.25);
+    CHECK(scene.warnings == std::vector<std::string>{"friction of material 'rubber' has no effect: no response of this "
+                                                     "pipeline models friction"});
     CHECK(world.position[0] == Vec3(1, 2, 3));
     CHECK(world.model_orientation(0).angularDistance(Quat(0, 1, 0, 0)) == Approx(0).margin(1e-12));
     CHECK(world.velocity[0] == Vec3(4, 5, 6));

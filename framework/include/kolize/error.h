@@ -34,7 +34,7 @@ KOLIZE_API int edit_distance(const std::string& a, const std::string& b);
 template <class Names>
 std::string nearest_name(const std::string& word, const Names& candidates) {
     std::string best;
-    int best_distance = 1 + static_cast<int>(word.size()) / 3;
+    int best_distance = 1 + static_cast<int>(word.size()) / 4;
     for (const std::string& candidate : candidates)
         if (const int d = edit_distance(word, candidate); d <= best_distance && d < 4) {
             best = candidate;

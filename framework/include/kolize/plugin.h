@@ -43,6 +43,7 @@ struct Capabilities {
     Detail needs = Detail::overlap;               // response: refused with a narrowphase that gives less
     Detail uses = Detail::overlap;                // response: more than this is not computed for it (>= needs)
     bool allocates = false;         // narrowphase: calls allocate even when warm, because a library it uses does
+    bool friction = false;          // response: models friction; where none does, the friction of a scene has no effect
     bool bounding_spheres = false;  // response: treats the dynamic bodies that only it serves as their bounding spheres
 };
 

@@ -48,6 +48,22 @@ toml::table merged_config(const std::filesystem::path& file, const SceneOptions&
     return config;
 }
 
+// Friction is accepted in every scene, so that one scene serves many pipelines; silence would make a result look
+// frictional.
+std::vector<std::string> frictionless_materials(const Scene& scene, const PluginLibrary& plugins) {
+    const auto& rules = scene.pipeline.responses;
+    const bool modelled = std::any_of(rules.begin(), rules.end(), [&](const ResponseRule& rule) {
+        const LoadedPlugin* plugin = plugins.find(StageKind::response, rule.stage.plugin);
+        return plugin && plugin->descriptor->capabilities.friction;
+    });
+    std::vector<std::string> warnings;
+    for (const Material& material : scene.world.materials)
+        if (material.friction > 0 && !modelled)
+            warnings.push_back("friction of material '" + material.name +
+                               "' has no effect: no response of this pipeline models friction");
+    return warnings;
+}
+
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& file, const SceneOptions& options, const PluginLibrary& plugins) {
@@ -60,6 +76,7 @@ Scene load_scene(const std::filesystem::path& file, const SceneOptions& options,
     const NameTable shapes = read_shapes(config, scene.world);
     read_bodies(config, shapes, materials, scene.world);
     scene.rooms = read_rooms(config, materials);
+    scene.warnings = frictionless_materials(scene, plugins);
     return scene;
 }
 
