@@ -74,7 +74,8 @@ std::vector<Settings> combinations(const std::vector<Variation>& variations) {
 
 std::string label(const Settings& settings) {
     std::string text;
-    for (const auto& [key, value] : settings) text += (text.empty() ? "" : " ") + key + "=" + value;
+    for (const auto& [key, value] : settings)
+        text += (text.empty() ? "" : " ") + (key.ends_with(".plugin") ? value : key + "=" + value);
     return text;
 }
 
@@ -98,8 +99,9 @@ void add_length_options(CLI::App& command, RunLength& length) {
     command.add_option("--steps", length.steps, "Number of steps")->check(CLI::Range(1, 1000000000))->excludes(time);
 }
 
+int all_cores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
 void add_threads_option(CLI::App& command, int& threads) {
-    threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     command.add_option("--threads", threads, "Number of threads; results do not depend on it")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();

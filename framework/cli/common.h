@@ -67,7 +67,9 @@ struct RunLength {
 void add_set_option(CLI::App& command, std::vector<std::string>& set);
 void add_plugin_path_option(CLI::App& command, std::vector<std::string>& plugin_path);
 void add_length_options(CLI::App& command, RunLength& length);
+// The present value is the default: all_cores() where one answer is wanted soon, 1 where times are compared.
 void add_threads_option(CLI::App& command, int& threads);
+int all_cores();
 void add_json_option(CLI::App& command, std::string& json);
 
 // --- JSON ----------------------------------------------------------------------------------------------------------

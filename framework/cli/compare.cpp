@@ -82,7 +82,8 @@ void print_notes(const std::vector<Variant>& variants, std::ostream& out) {
 std::string text_report(const std::vector<Variant>& variants, const CompareOptions& options) {
     std::ostringstream out;
     out << options.scene << ": " << variants.size() << " pipelines, " << options.repeat
-        << " runs of each, interleaved with seed " << order_seed << ", " << options.threads << " threads\n\n";
+        << " runs of each, interleaved with seed " << order_seed << ", " << options.threads
+        << (options.threads == 1 ? " thread\n\n" : " threads\n\n");
     print_table(variants, out);
     print_notes(variants, out);
     return out.str();

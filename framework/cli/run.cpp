@@ -12,7 +12,7 @@ struct RunOptions {
     std::vector<std::string> set;
     std::vector<std::string> plugin_path;
     RunLength length;
-    int threads = 1;
+    int threads = all_cores();
     std::string json;
     std::string expect;
 };
