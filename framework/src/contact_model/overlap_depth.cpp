@@ -7,6 +7,7 @@ namespace kolize {
 namespace {
 
 constexpr std::size_t most_vertices = 32;  // of each patch that are tried
+constexpr std::size_t most_tests = 10000;  // of a vertex against a triangle: fewer vertices of large patches are tried
 constexpr std::size_t most_edges = 96;     // of a patch; more are not crossed with the other patch's
 
 // Flood from the curve inward, over edges that nothing pierces.
@@ -75,12 +76,14 @@ bool height_at(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, doubl
 double vertex_chords(const MeshPair& pair, const View& view, bool of_a, InnerPatch& patch, const InnerPatch& other) {
     const double up = of_a ? 1 : -1;  // A's patch is the upper end of every chord
     auto& vertices = patch.vertices;
-    if (vertices.size() > most_vertices)
-        std::nth_element(vertices.begin(), vertices.begin() + most_vertices, vertices.end(),
+    const std::size_t affordable = most_tests / std::max<std::size_t>(1, other.triangles.size());
+    const std::size_t tried = std::min(vertices.size(), std::clamp<std::size_t>(affordable, 1, most_vertices));
+    if (tried < vertices.size())
+        std::nth_element(vertices.begin(), vertices.begin() + tried, vertices.end(),
                          [&](auto u, auto v) { return up * view(of_a, u)[2] > up * view(of_a, v)[2]; });
     const Mesh& mesh = of_a ? pair.b : pair.a;
     double longest = 0;
-    for (std::size_t i = 0; i < std::min(vertices.size(), most_vertices); ++i) {
+    for (std::size_t i = 0; i < tried; ++i) {
         const Vec3 p = view(of_a, vertices[i]);
         for (const std::uint32_t t : other.triangles) {
             const auto [a, b, c] = mesh.triangles[t];
