@@ -199,19 +199,29 @@ MeshNarrowphase::~MeshNarrowphase() = default;
 
 Detail MeshNarrowphase::gives() const { return contact == "averaged" ? Detail::normal : Detail::manifold; }
 
-void MeshNarrowphase::prepare(const World&) {}
-
 void MeshNarrowphase::attach(Host& host) {
     Narrowphase::attach(host);
     workspaces_.clear();
-    for (std::size_t i = 0; i < max_chunks; ++i) {
-        auto& work = *workspaces_.emplace_back(std::make_unique<Workspace>());
-        work.contour.reserve();
-        work.triangles.hits.reserve(512);
-        work.mesh.candidates.reserve(256);
-        work.mesh.points.reserve(256);
-        work.regions.reserve(64);
-        work.contacts.rows.reserve(256);
+    for (std::size_t i = 0; i < max_chunks; ++i) workspaces_.push_back(std::make_unique<Workspace>());
+}
+
+// Sizes every workspace for the largest mesh, so that which pair comes to which chunk costs no allocation later.
+void MeshNarrowphase::prepare(const World& world) {
+    std::size_t vertices = 0, edges = 0, triangles = 0;
+    for (const Shape& shape : world.shapes)
+        if (shape.mesh) {
+            vertices = std::max(vertices, shape.mesh->vertices.size());
+            edges = std::max(edges, shape.mesh->edges.size());
+            triangles = std::max(triangles, shape.mesh->triangles.size());
+        }
+    for (const auto& work : workspaces_) {
+        work->contour.reserve(vertices, edges, triangles);
+        work->triangles.hits.reserve(512);
+        work->mesh.candidates.reserve(triangles);
+        work->mesh.parent.reserve(vertices);
+        work->mesh.points.reserve(vertices);
+        work->regions.reserve(64);
+        work->contacts.rows.reserve(256);
     }
 }
 

@@ -36,6 +36,7 @@ public:
     static void parameters(Parameters<Fcl>& p) { mesh_parameters<Fcl>(p); }
 
     void prepare(const World& world) override {
+        MeshNarrowphase::prepare(world);
         models_.clear();
         for (const Shape& shape : world.shapes) models_.push_back(shape.mesh ? make_model(*shape.mesh) : nullptr);
     }

@@ -59,7 +59,7 @@ public:
     ~MeshNarrowphase() override;
     Detail gives() const override;
     void attach(Host& host) override;
-    void prepare(const World& world) override;
+    void prepare(const World& world) override;  // an overriding function calls this one first
     void find_contacts(const NarrowphaseInput& input, Contacts& contacts) final;
 
     // contour  intersection segments joined into regions; a region's normal is the direction of its vector area

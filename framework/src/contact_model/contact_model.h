@@ -10,6 +10,7 @@ namespace kolize {
 // Set of small integers that is emptied in constant time.
 class Marks {
 public:
+    void reserve(std::size_t size) { stamps_.reserve(size); }
     void reset(std::size_t size) {
         if (stamps_.size() < size) stamps_.resize(size, 0);
         if (++now_ == 0) {
@@ -57,7 +58,8 @@ struct ContourScratch {
     Marks pierced_a, pierced_b;    // edges that go through a triangle of the other mesh
     Marks repeated_a, repeated_b;  // of them, those that go through more than one
 
-    void reserve();
+    // For meshes of at most these sizes; memory that is never used is never touched.
+    void reserve(std::size_t vertices, std::size_t edges, std::size_t triangles);
 };
 
 // One region per connected part of the intersection curve. For closed meshes in general position (no crossing point

@@ -191,16 +191,19 @@ ContactRegion make_region(const MeshPair& pair, std::uint32_t region, const Curv
 
 }  // namespace
 
-void ContourScratch::reserve() {
+void ContourScratch::reserve(std::size_t most_vertices, std::size_t most_edges, std::size_t most_triangles) {
     constexpr std::size_t usual =
         512;  // triangle pairs of one mesh pair; more is possible, it only costs an allocation
     segments.reserve(usual);
     ends.reserve(2 * usual);
     points.reserve(2 * usual);
+    vertices.reserve(most_vertices);
+    triangles.reserve(most_triangles);
+    for (Marks* marks : {&edges, &pierced_a, &pierced_b, &repeated_a, &repeated_b}) marks->reserve(most_edges);
     for (InnerPatch* patch : {&patch_a, &patch_b}) {
-        patch->triangles.reserve(2 * usual);
-        patch->vertices.reserve(2 * usual);
-        patch->edges.reserve(4 * usual);
+        patch->triangles.reserve(most_triangles);
+        patch->vertices.reserve(most_vertices);
+        patch->edges.reserve(most_edges);
     }
 }
 
