@@ -4,9 +4,10 @@
 // under which it sees the sides add up to a full turn, within epsilon. Then the triangles change roles.
 //
 // Source:   the angle-summation point-in-polygon test (Haines, "Point in polygon strategies", Graphics Gems IV, 1994).
-// Cost:     up to six cuts with three square roots and three arc cosines each: several times Moller's test.
+// Cost:     up to six cuts with three square roots and three arc cosines each.
 // Accuracy: the arc cosine loses half the digits near a full turn, so epsilon fattens the triangle by an amount that
-//           depends on its shape; coplanar triangles are never found. Float repeats the thesis; double helps little.
+//           depends on its shape; coplanar triangles are never found. Float, as in the thesis, errs more
+//           often than double (tests/narrowphase/triangle_test_test.cpp).
 // Choose it to see what the thesis' pipeline gives, as a baseline; not for new work.
 #include <kolize/mesh_narrowphase.h>
 #include <kolize/plugin.h>

@@ -4,7 +4,7 @@
 // intersect exactly when both intervals exist and overlap. Coplanar triangles are compared edge by edge in their plane.
 //
 // Source:   T. Moller, "A fast triangle-triangle intersection test", Journal of Graphics Tools 2(2), 1997.
-// Cost:     two planes, six distances and at most four divisions; most pairs end after three distances.
+// Cost:     two planes, six distances and at most four divisions; a pair that the first plane separates ends after three.
 // Accuracy: double, no epsilon: right for triangles in general position, undecided within rounding of a touch.
 // Choose it when meshes collide: with the contact model `contour` it is the default of this project.
 #include <kolize/mesh_narrowphase.h>
