@@ -32,7 +32,7 @@ void write_box_objects(const std::filesystem::path& folder) {
     int number = 0;
     for (const Model& model : object_models()) {
         const TriangleSoup soup = model.make();
-        write_obj(soup, folder / "models" / (std::string(model.name) + ".obj"));
+        write_mesh(soup, folder / "models" / (std::string(model.name) + ".obj"));
         const int count = number++ % 2 ? 3 : 2;
         write_text(folder / "states" / (std::string(model.name) + ".csv"),
                    states.table(count, mass_properties(soup).center_of_mass));
@@ -41,7 +41,7 @@ void write_box_objects(const std::filesystem::path& folder) {
 
 void write_box_fighter(const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder);
-    write_obj(fighter(), folder / "fighter.obj");
+    write_mesh(fighter(), folder / "fighter.obj");
 }
 
 }  // namespace

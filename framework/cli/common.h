@@ -23,6 +23,7 @@ namespace kolize::cli {
 void add_bench(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
+void add_massprops(CLI::App& app);
 void add_plugins(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 

@@ -81,7 +81,7 @@ Shape make_mesh(std::string name, const TriangleSoup& closed_surface) {
     Shape shape;
     shape.name = std::move(name);
     shape.kind = ShapeKind::mesh;
-    shape.mesh = build_mesh(body);
+    shape.mesh = build_mesh(body, defects.closed());
     shape.radius = shape.mesh->radius;
     shape.bounds = shape.mesh->bounds;
     shape.volume = mass.volume;

@@ -1,43 +1,15 @@
 // The built program as a user meets it: exit codes, what stands on which stream, and the files it leaves.
-#include "framework/mesh_files.h"
+#include "cli/shell.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <cstdlib>
-#include <sys/wait.h>
 
-using kolize::test::ScratchFolder;
+using namespace kolize::test;
 using nlohmann::json;
 
 namespace {
-
-struct Outcome {
-    int code = -1;
-    std::string out;
-    std::string err;
-};
-
-std::string text_of(const std::filesystem::path& file) {
-    std::ifstream stream(file);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-class Shell {
-public:
-    // Words as a shell reads them; the program runs in the scratch folder.
-    Outcome kolize(const std::string& arguments) const {
-        const std::string command = "cd '" + folder.path().string() + "' && '" KOLIZE_BINARY_DIR "/bin/kolize' " +
-                                    arguments + " >out.txt 2>err.txt";
-        const int status = std::system(command.c_str());
-        return {WEXITSTATUS(status), text_of(folder.path() / "out.txt"), text_of(folder.path() / "err.txt")};
-    }
-    std::size_t files() const {
-        return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder.path()), {}));
-    }
-    ScratchFolder folder;
-};
 
 // Two balls that meet after 1 s, head on, and bounce back.
 const std::string two_balls = R"([step]
@@ -155,7 +127,7 @@ TEST_CASE("a JSON file stands there whole or not at all", "[cli]") {
     CHECK(shell.files() == 4);  // the two scenes, out.txt, err.txt
     CHECK(shell.kolize("run scene.toml --steps 3 --json r.json").code == 0);
     CHECK(shell.files() == 5);
-    CHECK(json::parse(text_of(shell.folder.path() / "r.json"))["steps"] == 3);
+    CHECK(json::parse(file_bytes(shell.folder.path() / "r.json"))["steps"] == 3);
 }
 
 TEST_CASE("run --expect says which bounds hold and exits with 1 if one does not", "[cli]") {

@@ -61,6 +61,22 @@ private:
     }
 };
 
+// Triangles that span so many tetrahedra of positive volume with the origin, and one at the origin, from where the sums
+// are taken: integrals over the tetrahedra, though no surface is closed.
+TriangleSoup tetrahedra_on_origin(int count, std::mt19937& random) {
+    std::uniform_real_distribution<double> coordinate(-1, 1);
+    TriangleSoup soup{{Vec3::Zero()}, {{0, 0, 0}}, {}, ""};
+    for (int i = 0; i < count; ++i) {
+        Vec3 corner[3];
+        for (Vec3& v : corner) v = Vec3(coordinate(random), coordinate(random), coordinate(random));
+        if (corner[0].dot(corner[1].cross(corner[2])) < 0) std::swap(corner[0], corner[1]);
+        const auto v = static_cast<std::uint32_t>(soup.vertices.size());
+        soup.vertices.insert(soup.vertices.end(), corner, corner + 3);
+        soup.triangles.push_back({v, v + 1, v + 2});
+    }
+    return soup;
+}
+
 }  // namespace
 
 TEST_CASE("A cube of side 500 has its closed-form mass properties", "[mass]") {
@@ -132,11 +148,47 @@ TEST_CASE("A needle keeps the small moment about its axis", "[mass]") {
 
 TEST_CASE("A finer mesh of the same cube has the same mass properties", "[mass]") {
     TriangleSoup cube = box_soup(Vec3::Constant(250));
-    for (int k = 0; k <= 5; ++k, cube = subdivided(cube)) {
+    for (int k = 0; k <= 7; ++k, cube = subdivided(cube)) {
         CAPTURE(k);
+        REQUIRE(cube.triangles.size() == std::size_t{12} << (2 * k));
         const MassProperties mass = mass_properties(cube);
         CHECK(mass.volume == Approx(1.25e8).epsilon(1e-14));
         CHECK(relative_error(mass.inertia_over_mass, Mat3::Identity() * (125000.0 / 3)) <= 1e-14);
+    }
+}
+
+// Triangles are taken four at a time; what is left over at the end must count as much as the rest.
+TEST_CASE("Every triangle counts, however many there are", "[mass]") {
+    std::mt19937 random(44);
+    for (int tetrahedra = 1; tetrahedra <= 9; ++tetrahedra)
+        for (int repeat = 0; repeat < 20; ++repeat) {
+            CAPTURE(tetrahedra, repeat);
+            const TriangleSoup soup = tetrahedra_on_origin(tetrahedra, random);
+            const MassProperties mass = mass_properties(soup);
+            const ExactMass exact(soup);
+            CHECK(mass.volume == Approx(exact.volume.convert_to<double>()).epsilon(1e-14));
+            CHECK(relative_error(mass.inertia_over_mass, exact.inertia()) <= 1e-14);
+        }
+}
+
+TEST_CASE("Solids of few triangles have their closed-form mass properties", "[mass]") {
+    const auto volume = [](const TriangleSoup& soup) { return mass_properties(soup).volume; };
+    CHECK(volume(cone(3, 1, 2)) == Approx(2.0 / 3 * 3 * std::sqrt(3) / 4).epsilon(1e-14));          // 6 triangles
+    CHECK(volume(cone(4, 1, 3)) == Approx(2).epsilon(1e-14));                                       // 8
+    CHECK(volume(cone(5, 1, 3)) == Approx(2.5 * std::sin(0.4 * std::numbers::pi)).epsilon(1e-14));  // 10
+}
+
+TEST_CASE("The order of the triangles does not matter", "[mass]") {
+    std::mt19937 random(12);
+    TriangleSoup soup = moved(subdivided(cone48()), random_rotation(random), Vec3(300, -200, 100));
+    const MassProperties first = mass_properties(soup);
+    for (int repeat = 0; repeat < 50; ++repeat) {
+        CAPTURE(repeat);
+        std::shuffle(soup.triangles.begin(), soup.triangles.end(), random);
+        const MassProperties mass = mass_properties(soup);
+        CHECK(mass.volume == Approx(first.volume).epsilon(1e-14));
+        CHECK((mass.center_of_mass - first.center_of_mass).norm() <= 1e-14 * 300);
+        CHECK(relative_error(mass.inertia_over_mass, first.inertia_over_mass) <= 1e-14);
     }
 }
 

@@ -1,5 +1,6 @@
 // Every file that a fault can make of a good one must end in a soup that keeps its promises, or in an Error.
 #include "framework/mesh_files.h"
+#include "framework/mesh_mutations.h"
 #include "framework/solids.h"
 
 #include <kolize/mesh_io.h>
@@ -19,7 +20,7 @@ struct Sample {
 std::vector<Sample> samples() {
     const ScratchFolder folder;
     const TriangleSoup solid = cone(5, 1, 2);
-    write_obj(solid, folder.path() / "out.obj");
+    write_mesh(solid, folder.path() / "out.obj");
     return {{"m.obj", file_bytes(folder.path() / "out.obj")},
             {"m.off", as_off(solid)},
             {"t.stl", as_text_stl(solid)},
@@ -27,26 +28,6 @@ std::vector<Sample> samples() {
             {"t.ply", as_text_ply(solid)},
             {"l.ply", as_binary_ply(solid, false)},
             {"b.ply", as_binary_ply(solid, true)}};
-}
-
-std::string mutated(std::string bytes, std::mt19937& random) {
-    const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
-    for (std::size_t changes = below(4) + 1; changes > 0; --changes) {
-        char& byte = bytes[below(bytes.size())];
-        const std::string likely = "0123456789 -.\n/e#\\";
-        byte = below(2) ? static_cast<char>(below(256)) : likely[below(likely.size())];
-    }
-    if (below(4) == 0) bytes.resize(below(bytes.size()) + 1);
-    if (below(8) == 0) bytes.insert(below(bytes.size()), bytes.substr(below(bytes.size()), 40));
-    return bytes;
-}
-
-void check_promises(const TriangleSoup& soup) {
-    REQUIRE_FALSE(soup.triangles.empty());
-    REQUIRE((soup.lines.empty() || soup.lines.size() == soup.triangles.size()));
-    for (const Vec3& v : soup.vertices) REQUIRE(v.allFinite());
-    for (const Triangle& t : soup.triangles)
-        for (const std::uint32_t v : t) REQUIRE(v < soup.vertices.size());
 }
 
 }  // namespace

@@ -18,6 +18,9 @@ struct MassProperties {
 // Graphics Tools 1(2), 1996.
 KOLIZE_API MassProperties mass_properties(const TriangleSoup& closed_surface);
 
+// Sum of the areas of the triangles, m^2.
+KOLIZE_API double surface_area(const TriangleSoup& surface);
+
 struct PrincipalFrame {
     Vec3 moments = Vec3::Ones();   // principal moments over mass, m^2, in the order of the axes
     Quat axes = Quat::Identity();  // principal frame to input axes; identity if the tensor is diagonal already

@@ -31,7 +31,6 @@ struct Aabb {
     bool overlaps(const Aabb& o) const {
         return (min.array() <= o.max.array()).all() && (o.min.array() <= max.array()).all();
     }
-    bool contains(const Vec3& p) const { return (min.array() <= p.array()).all() && (p.array() <= max.array()).all(); }
     Vec3 center() const { return 0.5 * (min + max); }
     Vec3 half_extents() const { return 0.5 * (max - min); }
     bool finite() const { return min.allFinite() && max.allFinite(); }

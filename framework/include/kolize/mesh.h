@@ -21,6 +21,8 @@ struct TriangleSoup {
     std::vector<Triangle> triangles;
     std::vector<int> lines;  // per triangle: where the file names it; empty when the file has no lines
     std::string file;
+    std::vector<std::string> info = {};   // what the file says about itself (WorldInfo of VRML); write_mesh keeps it
+    std::vector<std::string> notes = {};  // what the reader passed over, in sentences: "x.wrl:12: Inline is not used"
 };
 
 // What is wrong with a soup as the surface of a solid. All false and zero: a closed, oriented, two-manifold surface.
@@ -30,6 +32,8 @@ struct MeshDefects {
     std::size_t non_manifold_edges = 0;    // edges with three triangles or more
     std::size_t misoriented_edges = 0;     // edges that both their triangles run through the same way
     std::size_t degenerate_triangles = 0;  // a vertex twice, or no area
+    std::size_t repeated_triangles = 0;    // with the same three vertices as an earlier one
+    std::size_t unbalanced_edges = 0;      // edges that are not run through as often one way as the other
     bool inverted = false;                 // closed, but with the normals inward (negative volume) or with no volume
     std::string first;                     // one phrase for the first defect: "edge 3-17 has one triangle (x.obj:12)";
                                            // vertices and triangles count from 0
@@ -37,6 +41,9 @@ struct MeshDefects {
     bool closed() const {
         return !empty && !open_edges && !non_manifold_edges && !misoriented_edges && !inverted && !degenerate_triangles;
     }
+    // Weaker than closed(): the triangles bound a volume (every point is a whole number of times inside), so integrals
+    // over them are exact, though several sheets may meet in an edge or a triangle may have no area.
+    bool bounds_volume() const { return !empty && !unbalanced_edges; }
 };
 
 KOLIZE_API MeshDefects inspect(const TriangleSoup& soup);
@@ -45,6 +52,9 @@ struct Edge {
     std::uint32_t v0 = 0, v1 = 0;  // vertices, v0 < v1
     std::uint32_t t0 = 0, t1 = 0;  // the two triangles; t0 runs v0 -> v1, t1 runs v1 -> v0 (t1 == t0 on a border)
 };
+
+// The same triangles with vertices that are equal (coordinate by coordinate) made one; unused vertices stay.
+KOLIZE_API TriangleSoup join_equal_vertices(TriangleSoup soup);
 
 // Immutable after build_mesh; shared by all bodies of its shape. Coordinates are in the shape's body frame (m).
 struct KOLIZE_API Mesh {
@@ -63,6 +73,8 @@ struct KOLIZE_API Mesh {
 // Vertices are used as they stand (map them to the body frame first). The soup may be open, for static queries:
 // triangle ids are kept, and a side that finds no partner gets an edge of its own.
 KOLIZE_API std::shared_ptr<const Mesh> build_mesh(const TriangleSoup& soup);
+// The same for a soup of which inspect has said already whether it is closed, here or before a rigid motion.
+KOLIZE_API std::shared_ptr<const Mesh> build_mesh(const TriangleSoup& soup, bool closed);
 
 // A box of the given half extents as twelve triangles about the origin.
 KOLIZE_API TriangleSoup box_soup(const Vec3& half_extents);

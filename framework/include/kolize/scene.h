@@ -49,7 +49,7 @@ struct Scene {
     World world;       // bodies of [[body]]; rooms become bodies when a simulation is made
     std::vector<Room> rooms;
     PipelineConfig pipeline;
-    std::vector<std::string> warnings;  // what the file asks for and this pipeline does not model, a sentence each
+    std::vector<std::string> warnings;  // what the files ask for and is not modelled or not read, a sentence each
 };
 
 // Names of plugins that are taken where neither scene nor pipeline names one.

@@ -3,7 +3,7 @@
 
 #include <kolize/mesh.h>
 
-#include <span>
+#include <filesystem>
 #include <string_view>
 
 namespace kolize::mesh_io {
@@ -19,6 +19,10 @@ TriangleSoup read_obj(const MeshFile& file);
 TriangleSoup read_off(const MeshFile& file);
 TriangleSoup read_ply(const MeshFile& file);
 TriangleSoup read_stl(const MeshFile& file);
+TriangleSoup read_vrml(const MeshFile& file);
+
+// Chooses the reader as read_mesh does.
+TriangleSoup read_mesh_bytes(const MeshFile& file);
 
 // Whether the size is the one that the count in the header asks for. Text files never pass, whatever they begin with,
 // and binary ones do even if they begin with "solid", as some do.
@@ -27,13 +31,14 @@ bool is_binary_stl(std::string_view bytes);
 // "file: byte N: message"; bytes count from 0.
 [[noreturn]] void fail_at_byte(const MeshFile& file, std::size_t byte, const std::string& message);
 
-// A word as it can stand in a message: printable, short, in quotes.
+// A word as it can stand in a message: printable and short; the second in quotes.
+std::string printable(std::string_view word);
 std::string quoted(std::string_view word);
+
+// Of a file name, dot and all, in lower case.
+std::string lower_extension(const std::filesystem::path& path);
 
 // The fewest digits that read back to the same bits.
 std::string shortest_text(double number);
-
-// Cuts a polygon of three corners or more into triangles around its first corner.
-void add_fan(TriangleSoup& soup, std::span<const std::uint32_t> corners);
 
 }  // namespace kolize::mesh_io

@@ -1,14 +1,9 @@
 // Wavefront OBJ: statements "v" and "f"; all others (texture coordinates, groups, materials, curves ...) say nothing
 // about the surface and are passed over.
+#include "mesh_io/polygon.h"
 #include "mesh_io/scanner.h"
 
-#include <kolize/mesh_io.h>
-
-#include <fstream>
-
-namespace kolize {
-
-namespace mesh_io {
+namespace kolize::mesh_io {
 
 namespace {
 
@@ -33,7 +28,7 @@ void read_face(Scanner& in, std::vector<std::uint32_t>& corners, TriangleSoup& s
     for (std::string_view word = in.word(); !word.empty(); word = in.word())
         corners.push_back(read_corner(in, word, soup.vertices.size()));
     if (corners.size() < 3) in.fail("a face needs at least 3 corners, has " + std::to_string(corners.size()));
-    add_fan(soup, corners);
+    add_polygon(soup.triangles, soup.vertices, corners);
     soup.lines.resize(soup.triangles.size(), line);
 }
 
@@ -62,23 +57,4 @@ TriangleSoup read_obj(const MeshFile& file) {
     return soup;
 }
 
-}  // namespace mesh_io
-
-void write_obj(const TriangleSoup& soup, const std::filesystem::path& file) {
-    std::string text;
-    for (const Vec3& v : soup.vertices) {
-        text += 'v';
-        for (const double coordinate : v) text += ' ' + mesh_io::shortest_text(coordinate);
-        text += '\n';
-    }
-    for (const Triangle& t : soup.triangles) {
-        text += 'f';
-        for (const std::uint32_t v : t) text += ' ' + std::to_string(v + 1ull);
-        text += '\n';
-    }
-    std::ofstream out(file, std::ios::binary);
-    if (!out.write(text.data(), static_cast<std::streamsize>(text.size())).flush())
-        throw Error(SourceLocation{file.string()}, "the mesh cannot be written to this file");
-}
-
-}  // namespace kolize
+}  // namespace kolize::mesh_io

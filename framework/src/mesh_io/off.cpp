@@ -1,5 +1,6 @@
 // Object File Format of Geomview: OFF, and COFF, NOFF, STOFF and their combinations, whose further columns (colours,
 // normals, texture coordinates) are left out.
+#include "mesh_io/polygon.h"
 #include "mesh_io/scanner.h"
 
 namespace kolize::mesh_io {
@@ -42,7 +43,7 @@ void read_face(Scanner& in, std::vector<std::uint32_t>& corners, TriangleSoup& s
         corners.push_back(static_cast<std::uint32_t>(v));
     }
     in.skip_line();  // the colour of the face
-    add_fan(soup, corners);
+    add_polygon(soup.triangles, soup.vertices, corners);
     soup.lines.resize(soup.triangles.size(), line);
 }
 

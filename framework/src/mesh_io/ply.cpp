@@ -1,6 +1,7 @@
 // Polygon File Format (Stanford): text and binary of both byte orders, any elements and properties in any order. Of
 // these "vertex" (x, y, z) and "face" (the list vertex_indices or vertex_index) are used and the others passed over.
 #include "mesh_io/ply_header.h"
+#include "mesh_io/polygon.h"
 #include "mesh_io/scanner.h"
 
 #include <algorithm>
@@ -147,7 +148,7 @@ private:
                              std::to_string(vertex_count_) + ", counted from 0");
             corners_.push_back(static_cast<std::uint32_t>(v));
         }
-        add_fan(soup_, corners_);
+        add_polygon(soup_.triangles, soup_.vertices, corners_);
         values_.end_row(soup_);
     }
 

@@ -14,21 +14,26 @@ void fail_at_byte(const MeshFile& file, std::size_t byte, const std::string& mes
     throw Error(file.name + ": byte " + std::to_string(byte) + ": " + message);
 }
 
-std::string quoted(std::string_view word) {
+std::string printable(std::string_view word) {
     constexpr std::size_t longest = 24;
     std::string text(word.substr(0, longest));
     for (char& c : text)
         if (c < ' ' || c > '~') c = '?';
-    return "'" + text + (word.size() > longest ? "...'" : "'");
+    return word.size() > longest ? text + "..." : text;
 }
+
+std::string quoted(std::string_view word) { return "'" + printable(word) + "'"; }
 
 std::string shortest_text(double number) {
     char digits[32];
     return {digits, std::to_chars(digits, digits + sizeof digits, number).ptr};
 }
 
-void add_fan(TriangleSoup& soup, std::span<const std::uint32_t> corners) {
-    for (std::size_t k = 2; k < corners.size(); ++k) soup.triangles.push_back({corners[0], corners[k - 1], corners[k]});
+std::string lower_extension(const std::filesystem::path& path) {
+    std::string text = path.extension().string();
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
 }
 
 namespace {
@@ -52,13 +57,6 @@ std::string load(const std::filesystem::path& path) {
     return bytes;
 }
 
-std::string lower_extension(const std::filesystem::path& path) {
-    std::string text = path.extension().string();
-    for (char& c : text)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return text;
-}
-
 // The first word, past comments; empty in a binary file.
 std::string_view first_word(const MeshFile& file) {
     const std::string_view start = file.bytes.substr(0, 4096);
@@ -69,6 +67,9 @@ std::string_view first_word(const MeshFile& file) {
 Reader reader_by_content(const MeshFile& file) {
     if (file.bytes.starts_with("ply\n") || file.bytes.starts_with("ply\r")) return read_ply;
     if (is_binary_stl(file.bytes)) return read_stl;
+    if (file.bytes.starts_with("#VRML") || file.bytes.starts_with("\xef\xbb\xbf#VRML")) return read_vrml;
+    if (file.bytes.starts_with("\x1f\x8b"))
+        throw Error(SourceLocation{file.name}, "the file is packed by gzip; unpack it first");
     const std::string_view word = first_word(file);
     if (word == "solid") return read_stl;
     if (word.ends_with("OFF")) return read_off;
@@ -80,23 +81,30 @@ Reader reader_by_extension(const std::string& extension) {
     if (extension == ".off") return read_off;
     if (extension == ".ply") return read_ply;
     if (extension == ".stl") return read_stl;
+    if (extension == ".wrl") return read_vrml;
     return nullptr;
 }
 
 }  // namespace
 
+TriangleSoup read_mesh_bytes(const MeshFile& file) {
+    Reader reader = reader_by_content(file);
+    if (!reader) reader = reader_by_extension(lower_extension(file.name));
+    if (!reader)
+        throw Error(SourceLocation{file.name},
+                    "this is no mesh file that can be read: OBJ, OFF, STL, PLY and VRML97 are");
+    TriangleSoup soup = reader(file);
+    if (soup.triangles.empty())
+        throw Error(SourceLocation{file.name},
+                    "there are no triangles in the file" + (soup.notes.empty() ? "" : " (" + soup.notes[0] + ")"));
+    return soup;
+}
+
 }  // namespace mesh_io
 
 TriangleSoup read_mesh(const std::filesystem::path& path) {
     const std::string bytes = mesh_io::load(path);
-    const mesh_io::MeshFile file{path.string(), bytes};
-    auto reader = mesh_io::reader_by_content(file);
-    if (!reader) reader = mesh_io::reader_by_extension(mesh_io::lower_extension(path));
-    if (!reader)
-        throw Error(SourceLocation{file.name}, "this is no mesh file that can be read: OBJ, OFF, STL and PLY are");
-    TriangleSoup soup = reader(file);
-    if (soup.triangles.empty()) throw Error(SourceLocation{file.name}, "there are no triangles in the file");
-    return soup;
+    return mesh_io::read_mesh_bytes({path.string(), bytes});
 }
 
 }  // namespace kolize

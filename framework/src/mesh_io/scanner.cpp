@@ -1,5 +1,7 @@
 #include "mesh_io/scanner.h"
 
+#include "mesh_io/number.h"
+
 #include <algorithm>
 #include <charconv>
 
@@ -8,12 +10,6 @@ namespace kolize::mesh_io {
 namespace {
 
 bool is_blank(char c) { return static_cast<unsigned char>(c) <= ' '; }
-
-// from_chars knows no plus sign.
-std::string_view without_plus(std::string_view word) {
-    if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
-    return word;
-}
 
 }  // namespace
 
@@ -72,12 +68,10 @@ void Scanner::skip_line() {
 double Scanner::number(const char* what) {
     const std::string_view whole = word();
     if (whole.empty()) fail(std::string(what) + " is missing");
-    const std::string_view digits = without_plus(whole);
     double value = 0;
-    const auto [end, error] = std::from_chars(digits.begin(), digits.end(), value);
-    if (end != digits.end() || error == std::errc::invalid_argument)
-        fail(std::string(what) + " must be a number, is " + quoted(whole));
-    if (error != std::errc() || !std::isfinite(value))
+    const NumberFault fault = parse_number(whole, value);
+    if (fault == NumberFault::not_a_number) fail(std::string(what) + " must be a number, is " + quoted(whole));
+    if (fault == NumberFault::not_finite)
         fail(std::string(what) + " must be finite and within the range of a double, is " + quoted(whole));
     return value;
 }

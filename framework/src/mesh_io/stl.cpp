@@ -1,8 +1,8 @@
 // Stereolithography: triangles without shared vertices, as text or binary. Normals and attribute words are left out.
 #include "mesh_io/scanner.h"
+#include "vertex_welder.h"
 
 #include <bit>
-#include <unordered_map>
 
 namespace kolize::mesh_io {
 
@@ -10,34 +10,6 @@ namespace {
 
 constexpr std::size_t header_size = 84;    // 80 bytes of text and the number of triangles
 constexpr std::size_t triangle_size = 50;  // normal, three corners (floats), attribute word
-
-// Joins vertices that are equal bit by bit.
-class Welder {
-public:
-    explicit Welder(std::vector<Vec3>& vertices) : vertices_(vertices) {}
-
-    std::uint32_t index_of(const Vec3& p) {
-        const Vec3 key = p + Vec3::Zero();  // -0 becomes 0
-        const auto [found, is_new] = index_.try_emplace(key, static_cast<std::uint32_t>(vertices_.size()));
-        if (is_new) vertices_.push_back(key);
-        return found->second;
-    }
-
-private:
-    struct Hash {
-        std::size_t operator()(const Vec3& p) const {
-            std::uint64_t h = 0;
-            for (const double x : p) {
-                h = (h ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15;
-                h ^= h >> 32;
-            }
-            return h;
-        }
-    };
-
-    std::vector<Vec3>& vertices_;
-    std::unordered_map<Vec3, std::uint32_t, Hash> index_;
-};
 
 std::uint32_t little_endian(const char* bytes) {
     std::uint32_t value = 0;
@@ -47,7 +19,7 @@ std::uint32_t little_endian(const char* bytes) {
 
 TriangleSoup read_binary(const MeshFile& file) {
     TriangleSoup soup;
-    Welder welder(soup.vertices);
+    VertexWelder welder(soup.vertices);
     for (std::size_t at = header_size; at < file.bytes.size(); at += triangle_size) {
         Triangle& triangle = soup.triangles.emplace_back();
         for (std::size_t k = 0; k < 3; ++k) {
@@ -69,7 +41,7 @@ void expect(Scanner& in, std::string_view keyword) {
             (word.empty() ? "the end of the file" : quoted(word)));
 }
 
-Triangle read_facet(Scanner& in, Welder& welder) {
+Triangle read_facet(Scanner& in, VertexWelder& welder) {
     expect(in, "normal");
     for (int i = 0; i < 3; ++i) in.word();  // some writers put NaN here
     expect(in, "outer");
@@ -87,7 +59,7 @@ Triangle read_facet(Scanner& in, Welder& welder) {
 // One or more of: solid NAME, facets, endsolid NAME.
 TriangleSoup read_text(const MeshFile& file) {
     TriangleSoup soup;
-    Welder welder(soup.vertices);
+    VertexWelder welder(soup.vertices);
     Scanner in(file, file.bytes, Layout::free_form);
     bool inside = false;
     for (std::string_view word = in.word(); !word.empty(); word = in.word()) {

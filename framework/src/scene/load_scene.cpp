@@ -73,10 +73,10 @@ Scene load_scene(const std::filesystem::path& file, const SceneOptions& options,
     scene.pipeline = read_pipeline(config, options.defaults);
     scene.world.forces = read_forces(config);
     const NameTable materials = read_materials(config, scene.world);
-    const NameTable shapes = read_shapes(config, scene.world);
+    const NameTable shapes = read_shapes(config, scene.world, scene.warnings);
     read_bodies(config, shapes, materials, scene.world);
     scene.rooms = read_rooms(config, materials);
-    scene.warnings = frictionless_materials(scene, plugins);
+    for (std::string& warning : frictionless_materials(scene, plugins)) scene.warnings.push_back(std::move(warning));
     return scene;
 }
 

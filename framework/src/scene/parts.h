@@ -31,7 +31,8 @@ private:
 
 // [[material]] and [[shape]], into world.materials and world.shapes. Material 0 is the default one.
 NameTable read_materials(const toml::table& config, World& world);
-NameTable read_shapes(const toml::table& config, World& world);
+// `warnings` takes what a mesh file holds and is not used.
+NameTable read_shapes(const toml::table& config, World& world, std::vector<std::string>& warnings);
 
 // [[body]], with the rows of `from` tables.
 void read_bodies(const toml::table& config, const NameTable& shapes, const NameTable& materials, World& world);

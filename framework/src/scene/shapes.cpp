@@ -49,6 +49,8 @@ std::string main_defect(const MeshDefects& defects) {
 // Meshes are read and prepared once, whatever the number of shapes that use them.
 class MeshCache {
 public:
+    explicit MeshCache(std::vector<std::string>& warnings) : warnings_(warnings) {}
+
     Shape read(TableReader& reader, const std::string& name) {
         const std::filesystem::path file = reader.path("file");
         const double scale = reader.number("scale", 1, positive);
@@ -61,8 +63,9 @@ public:
     }
 
 private:
-    static Shape build(const TableReader& reader, const std::filesystem::path& file, double scale) {
+    Shape build(const TableReader& reader, const std::filesystem::path& file, double scale) {
         TriangleSoup soup = read_mesh(file);
+        warnings_.insert(warnings_.end(), soup.notes.begin(), soup.notes.end());
         for (Vec3& vertex : soup.vertices) vertex *= scale;
         const std::string mesh = "mesh '" + file.string() + "' ";
         if (const MeshDefects defects = inspect(soup); !defects.closed())
@@ -75,6 +78,7 @@ private:
         }
     }
 
+    std::vector<std::string>& warnings_;
     std::map<std::pair<std::filesystem::path, double>, Shape> shapes_;
 };
 
@@ -128,9 +132,9 @@ NameTable read_materials(const toml::table& config, World& world) {
     return names;
 }
 
-NameTable read_shapes(const toml::table& config, World& world) {
+NameTable read_shapes(const toml::table& config, World& world, std::vector<std::string>& warnings) {
     NameTable names("shape");
-    MeshCache meshes;
+    MeshCache meshes(warnings);
     for (const toml::table* table : tables(config, "shape")) {
         TableReader reader(*table, "[[shape]]");
         const std::string name = read_name(reader, "shape");
