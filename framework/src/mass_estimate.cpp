@@ -131,11 +131,13 @@ private:
 };
 
 // The winding number at each point of the grid. What faces inward is turned: the sum of all is never negative.
-std::vector<double> sample(const TriangleSoup& surface, const Grid& grid, Host& host) {
+std::vector<double> sample(const TriangleSoup& surface, const Grid& grid, Host& host,
+                           const std::function<void(std::size_t, std::size_t)>& advance) {
     const WindingNumber winding(surface);
     std::vector<double> numbers(grid.size());
     host.parallel_for(grid.size(), 1024, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) numbers[i] = winding.at(grid.origin() + grid.point(i));
+        if (advance) advance(end - begin, grid.size());
     });
     if (std::accumulate(numbers.begin(), numbers.end(), 0.0) < 0)
         for (double& number : numbers) number = -number;
@@ -176,14 +178,15 @@ Influence sampling_error(const std::vector<double>& numbers, const MassPropertie
 
 }  // namespace
 
-MassEstimate estimate_mass_properties(const TriangleSoup& surface, std::size_t samples, Host& host) {
+MassEstimate estimate_mass_properties(const TriangleSoup& surface, std::size_t samples, Host& host,
+                                      const std::function<void(std::size_t, std::size_t)>& advance) {
     Aabb box;
     for (const Triangle& triangle : surface.triangles)
         for (const std::uint32_t v : triangle) box.include(surface.vertices[v]);
     MassEstimate result;
     if (surface.triangles.empty() || (box.max - box.min).minCoeff() <= 0) return result;  // nothing can be inside
     const Grid grid(box, samples);
-    const std::vector<double> numbers = sample(surface, grid, host);
+    const std::vector<double> numbers = sample(surface, grid, host, advance);
     result.samples = grid.size();
     result.mass = properties_above(0.5, numbers, grid);
     for (const double limit : {0.25, 0.75}) widen(result, properties_above(limit, numbers, grid));

@@ -2,7 +2,7 @@
 #include "massprops/prompt.h"
 #include "massprops/result.h"
 #include "massprops/study.h"
-#include "massprops/voxels.h"
+#include "massprops/slow_methods.h"
 
 #include <kolize/mesh_io.h>
 
@@ -14,7 +14,6 @@ namespace kolize::cli {
 namespace {
 
 constexpr double default_step = -100;
-constexpr std::size_t winding_samples = 100000;
 
 void choose_values(MassPropsResult& result) {
     const Model& model = result.model;
@@ -24,8 +23,7 @@ void choose_values(MassPropsResult& result) {
         result.voxel = std::move(voxels.result);
         result.voxel_seconds = voxels.seconds;
     }
-    if (!result.exact)
-        result.estimate = estimate_mass_properties(model.surface, winding_samples, *make_host(result.options.threads));
+    if (!result.exact) result.estimate = run_estimate(model.surface, result.options);
     if (result.options.wants_voxels()) {
         result.method = "voxel";
         result.mass = result.voxel->mass;

@@ -30,8 +30,10 @@ std::string line(const std::string& name, const BoundingSphere& sphere, const Ve
 double MassPropsResult::voxel_volume_uncertainty() const {
     const Vec3 sides = bounds.box.max - bounds.box.min;
     double spread = 0;
-    for (const VoxelPass& pass : voxel->passes)
-        spread = std::max(spread, std::abs(pass.mass.volume - voxel->mass.volume));
+    for (const VoxelPass& pass : voxel->passes) {
+        const double paired = 1 - static_cast<double>(pass.odd_lines) / static_cast<double>(pass.lines);
+        spread = std::max(spread, paired * std::abs(pass.mass.volume - voxel->mass.volume));
+    }
     return spread + sides.prod() * static_cast<double>(odd_rays()) / static_cast<double>(rays());
 }
 

@@ -21,7 +21,8 @@ struct MassPropsResult {
     std::optional<VoxelMassProperties> voxel;  // if asked for, or if there is nothing exact
     double voxel_seconds = 0;
 
-    // Half-width of the range in which the volume found by voxels may be: passes differ, and lines are left out.
+    // Half-width of the range in which the volume found by voxels may be: passes differ (each by the share of its lines
+    // that pair up), and the lines that are left out may hold something.
     double voxel_volume_uncertainty() const;
     std::uint64_t rays() const;
     std::uint64_t odd_rays() const;

@@ -1,6 +1,6 @@
 #include "massprops/study.h"
 
-#include "massprops/voxels.h"
+#include "massprops/slow_methods.h"
 
 namespace kolize::cli {
 namespace {

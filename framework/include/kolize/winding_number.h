@@ -5,6 +5,7 @@
 #include <kolize/host.h>
 #include <kolize/mass_properties.h>
 
+#include <functional>
 #include <memory>
 
 namespace kolize {
@@ -41,6 +42,8 @@ struct MassEstimate {
 // Samples the bounding box at a random point in each of about `samples` equal cells; the same points on every call and
 // for any number of threads. A surface that faces inward on the whole (the winding numbers have a negative sum) is
 // measured as if it were turned over.
-KOLIZE_API MassEstimate estimate_mass_properties(const TriangleSoup& surface, std::size_t samples, Host& host);
+// `advance(samples, of)` is called whenever some are done, from any thread.
+KOLIZE_API MassEstimate estimate_mass_properties(const TriangleSoup& surface, std::size_t samples, Host& host,
+                                                 const std::function<void(std::size_t, std::size_t)>& advance = {});
 
 }  // namespace kolize

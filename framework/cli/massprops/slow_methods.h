@@ -1,7 +1,9 @@
-// The voxel method as the command runs it: caster by name, all threads, with a progress bar.
+// The methods that take a while, as the command runs them: caster by name, all threads, with a progress bar.
 #pragma once
 
 #include "massprops/options.h"
+
+#include <kolize/winding_number.h>
 
 namespace kolize::cli {
 
@@ -11,5 +13,7 @@ struct TimedVoxels {
 };
 
 TimedVoxels run_voxels(const TriangleSoup& surface, const MassPropsOptions& options, double step);
+
+MassEstimate run_estimate(const TriangleSoup& surface, const MassPropsOptions& options);
 
 }  // namespace kolize::cli
