@@ -51,16 +51,16 @@ public:
         require(device_ != nullptr, nullptr);
         scene_.reset(rtcNewScene(device_.get()));
         rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-        Aabb bounds;
         for (const Triangle& triangle : surface.triangles)
-            for (const std::uint32_t v : triangle) bounds.include(surface.vertices[v]);
-        center_ = bounds.center();
+            for (const std::uint32_t v : triangle) bounds_.include(surface.vertices[v]);
+        center_ = bounds_.center();
         attach(surface);
         rtcCommitScene(scene_.get());
         require(rtcGetDeviceError(device_.get()) == RTC_ERROR_NONE, device_.get());
     }
 
     RTCScene scene() const { return scene_.get(); }
+    const Aabb& bounds() const { return bounds_; }
     const Vec3& center() const { return center_; }
 
 private:
@@ -83,6 +83,7 @@ private:
 
     Device device_;
     Scene scene_;
+    Aabb bounds_;
     Vec3 center_;
 };
 
@@ -142,11 +143,9 @@ private:
 
 class EmbreeCaster : public LineCaster {
 public:
-    EmbreeCaster(std::shared_ptr<const EmbreeSurface> embree, const TriangleSoup& surface, const GridLines& lines)
+    EmbreeCaster(std::shared_ptr<const EmbreeSurface> embree, const GridLines& lines)
         : embree_(std::move(embree)), lines_(lines) {
-        Aabb bounds;
-        for (const Triangle& triangle : surface.triangles)
-            for (const std::uint32_t v : triangle) bounds.include(surface.vertices[v]);
+        const Aabb& bounds = embree_->bounds();
         const double length = bounds.max[lines.axis] - bounds.min[lines.axis];
         begin_ = bounds.min[lines.axis] - 0.01 * length;
         length_ = 1.02 * length;
@@ -181,7 +180,7 @@ private:
 
 MakeLineCaster embree_line_caster() {
     return [shared = std::make_shared<SharedSurface>()](const TriangleSoup& surface, const GridLines& lines) {
-        return std::make_unique<EmbreeCaster>(shared->of(surface), surface, lines);
+        return std::make_unique<EmbreeCaster>(shared->of(surface), lines);
     };
 }
 
