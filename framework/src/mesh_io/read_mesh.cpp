@@ -22,7 +22,7 @@ std::string printable(std::string_view word) {
     return word.size() > longest ? text + "..." : text;
 }
 
-std::string quoted(std::string_view word) { return "'" + printable(word) + "'"; }
+std::string quoted(std::string_view word) { return std::string("'").append(printable(word)).append("'"); }
 
 std::string shortest_text(double number) {
     char digits[32];

@@ -29,8 +29,8 @@ void ValueReader::skip_to_closing(char closing, Names names) {
             expected += inner;
         } else if (token.kind == TokenKind::close_brace || token.kind == TokenKind::close_bracket) {
             if (token.text[0] != expected.back())
-                fail(token.line,
-                     "'" + expected.substr(expected.size() - 1) + "' should follow, but here is " + described(token));
+                fail(token.line, mesh_io::quoted(expected.substr(expected.size() - 1)) +
+                                     " should follow, but here is " + described(token));
             expected.pop_back();
         } else if (token.is("DEF")) {
             const Token name = take_word("a name");

@@ -22,7 +22,7 @@ std::string words(const Vec3& p) {
 
 std::string words(const Triangle& t, std::uint32_t first = 0) {
     std::string text;
-    for (const std::uint32_t v : t) text += (text.empty() ? "" : " ") + std::to_string(std::size_t{v} + first);
+    for (const std::uint32_t v : t) text.append(text.empty() ? "" : " ").append(std::to_string(std::size_t{v} + first));
     return text;
 }
 
