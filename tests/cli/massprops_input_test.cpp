@@ -83,6 +83,25 @@ TEST_CASE("A surface that is inside out is turned, with a remark", "[cli][masspr
     CHECK(has_remark(result, "its triangles face inward: all are turned"));
 }
 
+TEST_CASE("Of several parts those are turned that are inside out, and cavities are left", "[cli][massprops]") {
+    const Shell shell;
+    const TriangleSoup beside = box_between(Vec3(5, 0, 0), Vec3(6, 1, 1));
+    const TriangleSoup within = box_between(Vec3::Constant(-0.5), Vec3::Constant(0.5));
+    shell.folder.write("mixed.obj", as_obj(both(cube(), inside_out(beside))));
+    shell.folder.write("cavity.obj", as_obj(both(cube(), inside_out(within))));
+    shell.folder.write("nested.obj", as_obj(both(cube(), within)));
+    const json mixed = measured(shell, "mixed.obj"), cavity = measured(shell, "cavity.obj");
+    const json nested = measured(shell, "nested.obj");
+    for (const json& result : {mixed, cavity, nested}) CHECK(result["parts"] == 2);
+    CHECK(mixed["volume"].get<double>() == Approx(9));
+    CHECK(has_remark(mixed, "1 part of 2 faced inward without being a cavity: turned"));
+    CHECK(cavity["volume"].get<double>() == Approx(7));
+    CHECK(cavity["remarks"].empty());
+    CHECK(nested["volume"].get<double>() == Approx(9));
+    CHECK(has_remark(nested, "1 part of 2 lie within others without being a cavity: what is inside both counts twice"));
+    CHECK(has_remark(nested, "is enclosed more than once, and counts so"));
+}
+
 TEST_CASE("Triangles that do not share their vertices are joined, with a remark", "[cli][massprops]") {
     const Shell shell;
     shell.folder.write("torn.obj", as_obj(torn(cube())));

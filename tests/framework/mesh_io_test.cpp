@@ -1,6 +1,7 @@
 #include "framework/mesh_files.h"
 #include "framework/solids.h"
 
+#include <kolize/mass_properties.h>
 #include <kolize/mesh_io.h>
 
 #include <assimp/Importer.hpp>
@@ -115,6 +116,24 @@ TEST_CASE("OBJ faces take all forms of corners, negative numbers and polygons", 
     CHECK(soup.lines == std::vector<int>{10, 10, 14, 15});
     CHECK(soup.vertices[2] == Vec3(1, 1, 0));
     CHECK(soup.vertices[4] == Vec3(5, 5, 5));
+}
+
+TEST_CASE("A concave face is cut into triangles that do not overlap, in every format with polygons", "[mesh_io]") {
+    // An arrow head whose fan from the first corner folds over itself: the area tells.
+    const ScratchFolder folder;
+    const double area = 0.5 * 2 * 2 - 0.5 * 2 * 0.5;
+    const std::string obj = "v 0 0 0\nv 1 0.5 0\nv 2 0 0\nv 1 2 0\nf 1 2 3 4\nf 3 4 1 2\n";
+    const std::string off = "OFF\n4 2 0\n0 0 0\n1 0.5 0\n2 0 0\n1 2 0\n4 0 1 2 3\n4 2 3 0 1\n";
+    const std::string ply =
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0\n1 0.5 0\n2 0 0\n1 2 0\n4 0 1 2 3\n4 2 3 0 1\n";
+    for (const auto& [name, bytes] : {std::pair("a.obj", obj), std::pair("a.off", off), std::pair("a.ply", ply)}) {
+        CAPTURE(name);
+        const TriangleSoup soup = read_mesh(folder.write(name, bytes));
+        CHECK(soup.triangles.size() == 4);
+        CHECK(surface_area(soup) == Approx(2 * area));
+    }
 }
 
 TEST_CASE("OFF files take comments, colours and further columns", "[mesh_io]") {

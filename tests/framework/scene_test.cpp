@@ -266,6 +266,16 @@ TEST_CASE("settings of a plugin that --set replaced are dropped where the new on
     CHECK(load({{"narrowphase.plugin", "angle_sum"}}).narrowphase.settings.count("contact") == 1);
 }
 
+TEST_CASE("what a mesh file holds and is not read is a warning of the scene, once for all shapes of it", "[scene]") {
+    SceneFolder folder;
+    folder.write("part.wrl", "#VRML V2.0 utf8\nInline { url \"more.wrl\" }\nShape { geometry Box { } }\n");
+    const std::string shape = "kind = \"mesh\"\nfile = \"part.wrl\"\n";
+    folder.write("scene.toml", "[[shape]]\nname = \"a\"\n" + shape + "[[shape]]\nname = \"b\"\n" + shape);
+    const std::vector<std::string> warnings = folder.load().warnings;
+    REQUIRE(warnings.size() == 1);
+    CHECK(warnings[0].ends_with("part.wrl:2: Inline is not used"));
+}
+
 TEST_CASE("bodies take their states from a table with columns in any order", "[scene]") {
     SceneFolder folder;
     folder.write("scene.toml", ball + "[[body]]\nname = \"b\"\nshape = \"ball\"\nmass = 2\nfrom = \"s.csv\"\n");

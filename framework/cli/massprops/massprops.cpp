@@ -61,18 +61,19 @@ void warn(const MassPropsResult& result) {
         std::cerr << "kolize: " << file << " has parts that are inside out; no body has the moments that result\n";
 }
 
+// One of the two is given: refuse_contradictions saw to it.
 double mass_in_kg(const MassPropsOptions& options, const MassPropsResult& result) {
     if (options.mass) return *options.mass;
-    if (options.density) return *options.density * result.mass.volume;
-    throw Error("--format " + options.format + " needs the mass of the body: give --mass (kg) or --density (kg/m^3)");
+    return *options.density * result.mass.volume;
 }
 
 void write_outputs(const MassPropsOptions& options, const MassPropsResult& result) {
+    const bool text = options.format == "text";
+    if (!text && (result.mass.volume <= 0 || !is_of_a_body(result.principal.moments)))
+        throw Error(options.model + ": no body has the inertia that was found, so none is written");
     if (!options.output.empty()) write_mesh(recentred(result), options.output);
     if (!options.json.empty() && options.json != "-") write_json(to_json(result), options.json);
-    if (options.format != "text") {
-        if (result.mass.volume <= 0 || !is_of_a_body(result.principal.moments))
-            throw Error(options.model + ": no body has the inertia that was found, so none is written");
+    if (!text) {
         std::cout << inertial_element(options.format, result.mass, mass_in_kg(options, result));
     } else if (options.json != "-") {
         print_text(result, std::cout);
@@ -100,6 +101,11 @@ void refuse_contradictions(const MassPropsOptions& options) {
     std::error_code error;
     if (options.format != "text" && options.json == "-")
         throw Error("--format " + options.format + " and --json - both want stdout; give --json a file");
+    if (options.format != "text" && !options.mass && !options.density)
+        throw Error("--format " + options.format +
+                    " needs the mass of the body: give --mass (kg) or --density (kg/m^3)");
+    if (!options.study.empty() && (options.step || options.format != "text" || !options.output.empty()))
+        throw Error("--study prints errors over its own steps; it takes no STEP, --format or --output");
     if (!options.plot.empty() && options.study.empty()) throw Error("--plot shows a --study; give its steps");
     if (options.method == "exact" && options.step) throw Error("--method exact takes no step; leave one of them out");
     if (!options.output.empty() && std::filesystem::equivalent(options.model, options.output, error))

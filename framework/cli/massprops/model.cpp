@@ -79,7 +79,7 @@ void look_for_crossings(Model& model) {
     };
     model.remarks.push_back("the surface passes through itself: " + count_of(model.crossings.pairs, "pair") +
                             " of triangles cross, the first " + name(model.crossings.triangle_a) + " and " +
-                            name(model.crossings.triangle_b) + "");
+                            name(model.crossings.triangle_b));
 }
 
 // Crossings that are exact, and sheets that only look closed, show up in how often rays find themselves inside.

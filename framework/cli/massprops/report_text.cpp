@@ -1,7 +1,6 @@
 #include "massprops/result.h"
 
 #include <algorithm>
-#include <charconv>
 
 namespace kolize::cli {
 namespace {
