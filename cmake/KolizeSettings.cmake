@@ -1,6 +1,6 @@
 # Flags and folders that every target shares.
 option(KOLIZE_TESTS "Build the tests" ON)
-option(KOLIZE_BENCH "Build the benchmarks against other libraries (Bullet, Embree, FCL)" OFF)
+option(KOLIZE_BENCH "Build the benchmarks against other libraries (Bullet, Embree, FCL, ODE)" OFF)
 option(KOLIZE_FUZZ "Build the fuzzer of the mesh readers (clang only)" OFF)
 set(KOLIZE_SANITIZE "" CACHE STRING "Sanitizers, comma separated: address,undefined or thread")
 

@@ -1,7 +1,7 @@
 // The models and start states of the demos, made by formulas: `make_models DIR` writes them all.
 #pragma once
 
-#include <kolize/mesh.h>
+#include <kolize/world.h>
 
 #include <cstdint>
 #include <functional>
@@ -42,8 +42,25 @@ std::span<const Model> object_models();  // the solids of box_objects
 // Rounded to 6 decimals: the files do not depend on the last bit of a sine.
 void round_vertices(TriangleSoup& soup);
 
-// Start states as CSV (see [[body]] from): bodies near the points of a 3 x 3 x 3 lattice about the origin, in random
-// attitudes, with random velocities and spins.
+// Random numbers that are the same on every machine.
+class Random {
+public:
+    explicit Random(std::uint64_t seed) : state_(seed) {}
+
+    double uniform();             // [0, 1)
+    Vec3 in_ball(double radius);  // not in its middle
+    Quat attitude();
+
+private:
+    std::uint64_t state_;
+};
+
+// Tables of start states as CSV (see [[body]] from): the first line and a row, both with their line ends.
+inline constexpr const char* state_header = "x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n";
+std::string state_row(const BodyState& state);
+
+// Start states of bodies near the points of a 3 x 3 x 3 lattice about the origin, in random attitudes, with random
+// velocities and spins.
 class StateWriter {
 public:
     StateWriter(double spacing, double jitter, double speed, double spin, std::uint64_t seed);
@@ -52,12 +69,10 @@ public:
     std::string table(int count, const Vec3& center_of_mass);
 
 private:
-    double uniform();  // [0, 1)
-    Vec3 in_ball(double radius);
     std::string row(const Vec3& center_of_mass);
 
     double spacing_, jitter_, speed_, spin_;
-    std::uint64_t state_;
+    Random random_;
     std::vector<Vec3> free_places_;
 };
 

@@ -1,8 +1,9 @@
 #include "box_workload.h"
 
+#include "csv_row.h"
+
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <sstream>
@@ -27,20 +28,9 @@ Aabb box_from(const double* numbers) {
 // --- CSV -----------------------------------------------------------------------------------------------------------
 
 // Frame number and box of one row. Throws std::invalid_argument.
-std::pair<std::uint64_t, Aabb> parse_row(std::string_view line) {
+std::pair<std::uint64_t, Aabb> parse_box(std::string_view line) {
     std::array<double, 7> numbers{};
-    const char* at = line.data();
-    const char* const end = line.data() + line.size();
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        while (at < end && *at == ' ') ++at;
-        const auto [after, error] = std::from_chars(at, end, numbers[i]);
-        if (error != std::errc()) throw std::invalid_argument("column " + std::to_string(i + 1) + " is not a number");
-        at = after;
-        while (at < end && *at == ' ') ++at;
-        const bool last = i + 1 == numbers.size();
-        if (last ? at != end : at == end || *at++ != ',')
-            throw std::invalid_argument(std::string("seven numbers are wanted: ") + csv_header);
-    }
+    parse_row(line, csv_header, numbers);
     if (!(numbers[0] >= 0 && numbers[0] <= 1e15) || numbers[0] != std::floor(numbers[0]))
         throw std::invalid_argument("the frame must be a whole number from 0");
     return {static_cast<std::uint64_t>(numbers[0]), box_from(numbers.data() + 1)};
@@ -56,7 +46,7 @@ public:
         while (next(line)) {
             if (line.empty()) continue;
             try {
-                const auto [frame, box] = parse_row(line);
+                const auto [frame, box] = parse_box(line);
                 take(frame, box);
             } catch (const std::invalid_argument& error) {
                 throw Error(where_, error.what());

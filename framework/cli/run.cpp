@@ -1,6 +1,8 @@
 // kolize run: one scene through one pipeline.
 #include "common.h"
 
+#include <kolize/capsule.h>
+
 #include <iostream>
 
 namespace kolize::cli {
@@ -15,6 +17,9 @@ struct RunOptions {
     int threads = all_cores();
     std::string json;
     std::string expect;
+    bool ledger = false;
+    std::string capsule;
+    std::optional<std::uint64_t> capsule_at;
 };
 
 void print_stages(const RunResult& result) {
@@ -43,24 +48,93 @@ void print_result(const RunResult& result) {
               << "\nstate hash " << hex(result.state_hash) << '\n';
 }
 
+Scene load(const RunOptions& options, const PluginLibrary& plugins) {
+    Settings settings = parse_settings(options.set);
+    if (options.ledger) settings.emplace_back("ledger.check", "true");
+    return load_scene(options.scene, {options.pipeline, settings, plugin_defaults()}, plugins);
+}
+
+// Returns the file: in the working directory and named after scene and step, where the user gave no name.
+std::string write_capsule(const RunOptions& options, const Scene& capsule, const std::string& reason) {
+    const std::string scene = std::filesystem::path(options.scene).filename().string();
+    const std::string file = !options.capsule.empty() ? options.capsule
+                                                      : scene.substr(0, scene.find('.')) + ".step" +
+                                                            std::to_string(*capsule.capsule_step) + ".capsule.toml";
+    write_text(capsule_text(capsule, reason), file);
+    return file;
+}
+
+// The sentence, and where the failed step was kept. The step that a capsule is of needs no second one.
+std::string with_capsule(const std::string& sentence, const RunOptions& options, const Scene& scene,
+                         const Simulation& simulation) {
+    const Scene failed = simulation.capture_failure();
+    const bool wanted =
+        !options.capsule.empty() || (scene.pipeline.ledger.check && failed.capsule_step != scene.capsule_step);
+    if (options.capsule_at || !wanted) return sentence;
+    return sentence + "; capsule: " + write_capsule(options, failed, sentence);
+}
+
+void require_step(std::uint64_t wanted, std::uint64_t first, std::uint64_t count) {
+    if (wanted < first || wanted - first >= count)
+        throw Error("--capsule-at " + std::to_string(wanted) + ": there is no such step; the run has " +
+                    std::to_string(count) + ", from step " + std::to_string(first));
+}
+
+// Returns what the ledger complains of, or "".
+std::string advance(const RunOptions& options, const Scene& scene, Simulation& simulation, std::uint64_t count) {
+    const std::uint64_t first = scene.capsule_step.value_or(0);
+    if (options.capsule_at) require_step(*options.capsule_at, first, count);
+    std::string complaint;
+    Progress progress("run", count);
+    for (std::uint64_t step = first; step < first + count; ++step, progress.advance()) {
+        if (options.capsule_at == step) write_capsule(options, simulation.capture(), "asked for by --capsule-at");
+        try {
+            simulation.step();
+        } catch (const std::exception& failure) {
+            throw std::runtime_error(complaint.empty() ? with_capsule(failure.what(), options, scene, simulation)
+                                                       : complaint + "; then " + failure.what());
+        }
+        if (complaint.empty() && simulation.first_break())
+            complaint =
+                with_capsule(to_string(*simulation.first_break(), simulation.world()), options, scene, simulation);
+    }
+    return complaint;
+}
+
+Json ledger_json(const Simulation& simulation) {
+    const std::optional<LedgerBreak>& first = simulation.first_break();
+    if (!first) return {{"broken", false}};
+    return {{"broken", true},
+            {"step", first->step},
+            {"time", first->time},
+            {"stage", first->stage},
+            {"plugin", first->plugin},
+            {"bodies", first->bodies},
+            {"quantity", first->quantity},
+            {"unit", first->unit},
+            {"value", first->value},
+            {"limit", first->limit},
+            {"sentence", to_string(*first, simulation.world())}};
+}
+
 int run_scene(const RunOptions& options, const PluginLibrary& plugins, Host& host) {
-    const Scene scene =
-        load_scene(options.scene, {options.pipeline, parse_settings(options.set), plugin_defaults()}, plugins);
+    const Scene scene = load(options, plugins);
     for (const std::string& warning : scene.warnings) host.warn(warning);
     const std::uint64_t steps = options.length.count(scene.pipeline.step.dt, scene.pipeline.step.time);
     Simulation simulation(scene, plugins, host, steps);
-    {
-        Progress progress("run", steps);
-        for (std::uint64_t i = 0; i < steps; ++i, progress.advance()) simulation.step();
-    }
+    if (!options.capsule.empty()) simulation.keep_steps();
+    const std::string complaint = advance(options, scene, simulation, steps);
     const RunResult result = simulation.result();
     if (options.json != "-") print_result(result);
-    if (options.json.empty()) return 0;
-    Json json = to_json(result, pipeline_json(simulation));
-    json["host"] = host_block();
-    json["command"] = command_line();
-    write_json(json, options.json);
-    return 0;
+    if (!options.json.empty()) {
+        Json json = to_json(result, pipeline_json(simulation));
+        if (scene.pipeline.ledger.check) json["ledger"] = ledger_json(simulation);
+        json["host"] = host_block();
+        json["command"] = command_line();
+        write_json(json, options.json);
+    }
+    if (!complaint.empty()) std::cerr << "kolize: " << complaint << '\n';
+    return complaint.empty() ? 0 : 1;
 }
 
 int run_expectations(const RunOptions& options, const PluginLibrary& plugins, Host& host) {
@@ -91,7 +165,7 @@ int run(const RunOptions& options) {
 void add_run(CLI::App& app, int& exit_code) {
     const auto options = std::make_shared<RunOptions>();
     CLI::App* command = app.add_subcommand("run", "Run a scene through its pipeline and measure it");
-    command->add_option("scene", options->scene, "Scene file (TOML)")->required();
+    command->add_option("scene", options->scene, "Scene file or capsule (TOML)")->required();
     CLI::Option* pipeline = command->add_option("--pipeline", options->pipeline, "Pipeline file: replaces its tables");
     add_set_option(*command, options->set);
     add_length_options(*command, options->length);
@@ -100,7 +174,15 @@ void add_run(CLI::App& app, int& exit_code) {
     add_json_option(*command, options->json);
     CLI::Option* expect =
         command->add_option("--expect", options->expect, "Run the entries of this file and check their bounds instead");
+    CLI::Option* ledger =
+        command->add_flag("--ledger", options->ledger,
+                          "Check after every stage what it changed; the first break is told, and its step kept");
+    CLI::Option* capsule = command->add_option("--capsule", options->capsule,
+                                               "File to keep the first step in that fails or breaks the ledger");
+    CLI::Option* capsule_at =
+        command->add_option("--capsule-at", options->capsule_at, "Write the capsule of this step instead, and go on");
     expect->excludes(pipeline)->excludes("--set")->excludes("--time")->excludes("--steps");
+    expect->excludes(ledger)->excludes(capsule)->excludes(capsule_at);
     command->footer("Example: kolize run scene.toml --pipeline fast.toml --set step.dt=0.002 --time 5 --json -");
     command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -134,7 +134,10 @@ ExpectationOutcome run_expectation(const Expectation& expectation, const std::fi
     const std::uint64_t steps = expectation.steps ? expectation.steps : steps_in(time, step.dt);
     Simulation simulation(scene, plugins, host, steps);
     for (std::uint64_t i = 0; i < steps; ++i) simulation.step();
-    return {describe(expectation, steps), failures(expectation, simulation.result())};
+    ExpectationOutcome outcome{describe(expectation, steps), failures(expectation, simulation.result())};
+    if (const auto& broken = simulation.first_break())
+        outcome.failures.push_back(to_string(*broken, simulation.world()));
+    return outcome;
 }
 
 }  // namespace kolize

@@ -56,20 +56,6 @@ void moser_veselov_step(Quat& orientation, Vec3& momentum, const Vec3& inverse_i
     orientation = polished(orientation * turn);
     momentum = turn.conjugate() * momentum;
 }
-
-// Between world-frame angular momentum and velocity of a body with the given attitude.
-struct InertiaAt {
-    Mat3 rotation;
-    Vec3 inverse;  // principal
-
-    Vec3 momentum(const Vec3& velocity) const {
-        return rotation * (rotation.transpose() * velocity).cwiseQuotient(inverse);
-    }
-    Vec3 velocity(const Vec3& momentum) const {
-        return rotation * (rotation.transpose() * momentum).cwiseProduct(inverse);
-    }
-};
-
 }  // namespace
 
 Quat turned(const Quat& orientation, const Vec3& angle) {

@@ -5,6 +5,19 @@
 
 namespace kolize {
 
+// Between angular momentum and angular velocity, both in world axes, of a body with the given attitude.
+struct InertiaAt {
+    Mat3 rotation;  // body to world
+    Vec3 inverse;   // principal, 1/(kg m^2)
+
+    Vec3 momentum(const Vec3& velocity) const {
+        return rotation * (rotation.transpose() * velocity).cwiseQuotient(inverse);
+    }
+    Vec3 velocity(const Vec3& momentum) const {
+        return rotation * (rotation.transpose() * momentum).cwiseProduct(inverse);
+    }
+};
+
 // Turns by the constant world-frame rotation vector `angle` (rad): exact for any size.
 Quat turned(const Quat& orientation, const Vec3& angle);
 

@@ -52,7 +52,6 @@ void Measure::start(const World& world, const std::vector<Room>& rooms, std::uin
     });
     if (mass > 0) reference_ /= mass;
     initial_ = latest_ = totals(world);
-    start_position_ = world.position;
     has_escaped_.assign(world.size(), 0);
     touching_.reserve(4 * world.size());
     open_.reserve(4 * world.size());
@@ -64,18 +63,18 @@ Vec3 Measure::force_on(const World& world, std::uint32_t body) const {
     return world.forces.gravity / world.inverse_mass[body] + world.constant_force[body];
 }
 
-void Measure::add_body(const World& world, std::uint32_t body, Totals& sum) const {
-    const Vec3 momentum = world.velocity[body] / world.inverse_mass[body];
-    const Vec3 arm = world.position[body] - reference_;
-    sum.kinetic += world.kinetic_energy(body);
+void Measure::add_body(const World& world, std::uint32_t body, const BodyState& state, Totals& sum) const {
+    const Vec3 momentum = state.velocity / world.inverse_mass[body];
+    const Vec3 arm = state.position - reference_;
+    sum.kinetic += world.kinetic_energy(body, state);
     if (has_forces_) sum.potential -= force_on(world, body).dot(arm);
     sum.momentum += momentum;
-    sum.angular_momentum += arm.cross(momentum) + world.angular_momentum(body);
+    sum.angular_momentum += arm.cross(momentum) + world.angular_momentum(body, state);
 }
 
 Totals Measure::totals(const World& world) const {
     Totals sum;
-    for_live(world, [&](std::uint32_t body) { add_body(world, body, sum); });
+    for_live(world, [&](std::uint32_t body) { add_body(world, body, world.state(body), sum); });
     return sum;
 }
 
@@ -107,25 +106,21 @@ void Measure::set_scales(const World& world) {
     if (angular_scale_ == 0) angular_scale_ = speed_scale * (extent.max - extent.min).norm();
 }
 
-void Measure::before_motion(const World& world) {
-    if (has_losses_) motion_start_ = totals(world);
-    if (has_forces_ && !has_losses_) start_position_ = world.position;
-}
-
-void Measure::after_motion(const World& world, double dt) {
+void Measure::moved(const World& world, std::uint32_t body, const BodyState& before, const BodyState& after,
+                    double time) {
     if (has_losses_) {
-        const Totals now = totals(world);
-        exchange_.work += now.energy() - motion_start_.energy();
-        exchange_.impulse += now.momentum - motion_start_.momentum;
-        exchange_.angular_impulse += now.angular_momentum - motion_start_.angular_momentum;
+        Totals start, end;
+        add_body(world, body, before, start);
+        add_body(world, body, after, end);
+        exchange_.work += end.energy() - start.energy();
+        exchange_.impulse += end.momentum - start.momentum;
+        exchange_.angular_impulse += end.angular_momentum - start.angular_momentum;
     } else if (has_forces_) {
-        for_live(world, [&](std::uint32_t body) {
-            const Vec3 impulse = force_on(world, body) * dt;
-            // Along a parabola the mean of both ends is off by a multiple of the force: no moment about itself.
-            const Vec3 arm = 0.5 * (start_position_[body] + world.position[body]) - reference_;
-            exchange_.impulse += impulse;
-            exchange_.angular_impulse += arm.cross(impulse);
-        });
+        const Vec3 impulse = force_on(world, body) * time;
+        // Along a parabola the mean of both ends is off by a multiple of the force: no moment about itself.
+        const Vec3 arm = 0.5 * (before.position + after.position) - reference_;
+        exchange_.impulse += impulse;
+        exchange_.angular_impulse += arm.cross(impulse);
     }
 }
 
@@ -133,7 +128,8 @@ void Measure::after_response(const World& world, const std::vector<Contact>& row
     exchange_.work -= dissipated_J;
     for (const Contact& c : rows) {
         max_depth_ = std::max(max_depth_, c.depth);
-        if (touching_.empty() || touching_.back() != Pair{c.a, c.b}) touching_.push_back({c.a, c.b});
+        const bool overlaps = c.depth > 0 || c.normal.isZero(0);  // no more than that may have been asked for
+        if (overlaps && (touching_.empty() || touching_.back() != Pair{c.a, c.b})) touching_.push_back({c.a, c.b});
         if (c.impulse == 0 || world.is_static[c.a] == world.is_static[c.b]) continue;
         const bool on_a = world.is_static[c.b];
         const std::uint32_t body = on_a ? c.a : c.b;
@@ -146,7 +142,7 @@ void Measure::after_response(const World& world, const std::vector<Contact>& row
 void Measure::before_removal(const World& world, std::uint32_t body) {
     if (!is_live(world, body)) return;
     Totals gone;
-    add_body(world, body, gone);
+    add_body(world, body, world.state(body), gone);
     exchange_.work -= gone.energy();
     exchange_.impulse -= gone.momentum;
     exchange_.angular_impulse -= gone.angular_momentum;

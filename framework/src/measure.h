@@ -49,9 +49,10 @@ public:
 
     void start(const World& world, const std::vector<Room>& rooms, std::uint64_t expected_steps);
 
-    // Around the motion of all bodies.
-    void before_motion(const World& world);
-    void after_motion(const World& world, double dt);
+    // Forces act on what moves: `moved` wants to be told. Without forces it need not be called.
+    bool watches_motion() const { return has_forces_ || has_losses_; }
+    // A live body has moved freely for `time` seconds.
+    void moved(const World& world, std::uint32_t body, const BodyState& before, const BodyState& after, double time);
     // After the response: impulses from static bodies, energy that restitution took, depths, which pairs touch.
     void after_response(const World& world, const std::vector<Contact>& contacts, double dissipated_J);
     // Before body leaves the world.
@@ -66,7 +67,7 @@ public:
 
 private:
     Totals totals(const World& world) const;
-    void add_body(const World& world, std::uint32_t body, Totals& totals) const;
+    void add_body(const World& world, std::uint32_t body, const BodyState& state, Totals& totals) const;
     Vec3 force_on(const World& world, std::uint32_t body) const;
     void set_scales(const World& world);
     void measure_drift(const World& world);
@@ -77,9 +78,8 @@ private:
     Vec3 reference_ = Vec3::Zero();  // centre of mass of the scene at the start
     bool has_forces_ = false;        // gravity or constant forces: their impulse is known in closed form
     bool has_losses_ = false;        // drag or torques: their work is taken as measured around the motion
-    Totals initial_, latest_, motion_start_;
+    Totals initial_, latest_;
     Exchange exchange_, saved_;
-    std::vector<Vec3> start_position_;
     double energy_scale_ = 0, momentum_scale_ = 0, angular_scale_ = 0;
     double energy_drift_ = 0, momentum_drift_ = 0, angular_drift_ = 0, max_depth_ = 0;
 

@@ -40,7 +40,7 @@ void collect_near(const Mesh& mesh, const Vec3& center, double radius, std::vect
     stack[depth++] = 0;
     while (depth > 0) {
         const HierarchyNode& node = mesh.hierarchy.nodes[stack[--depth]];
-        const Vec3 gap = ((center - node.center).cwiseAbs() - node.half).cwiseMax(0.0);
+        const Vec3 gap = ((center - node.center.cast<double>()).cwiseAbs() - node.half.cast<double>()).cwiseMax(0.0);
         if (gap.squaredNorm() > radius * radius) continue;
         if (!node.is_leaf()) {
             stack[depth++] = node.first;
@@ -83,7 +83,54 @@ bool is_local_minimum(const Mesh& mesh, std::span<const SurfacePoint> group) {
     return group.size() == around;
 }
 
+// The smallest distance of any triangle: depth first, the nearer child first, and past boxes that are farther away.
+double distance_to_mesh(const Mesh& mesh, const Vec3& p) {
+    const auto& nodes = mesh.hierarchy.nodes;
+    const auto gap = [&](std::uint32_t i) {
+        return ((p - nodes[i].center.cast<double>()).cwiseAbs() - nodes[i].half.cast<double>()).cwiseMax(0.0).norm();
+    };
+    double nearest = infinity;
+    std::array<std::uint32_t, 64> stack;
+    std::size_t depth = 0;
+    stack[depth++] = 0;
+    while (depth > 0) {
+        const std::uint32_t i = stack[--depth];
+        const HierarchyNode& node = nodes[i];
+        if (gap(i) > nearest) continue;
+        if (!node.is_leaf()) {
+            const bool first_is_nearer = gap(node.first) <= gap(node.first + 1);
+            stack[depth++] = node.first + (first_is_nearer ? 1 : 0);
+            stack[depth++] = node.first + (first_is_nearer ? 0 : 1);
+            continue;
+        }
+        for (std::uint32_t k = node.first; k < node.first + node.count; ++k)
+            nearest = std::min(nearest, nearest_on_triangle(mesh, mesh.hierarchy.order[k], p).distance);
+    }
+    return nearest;
+}
+
+// The candidates that share a feature stand side by side.
+std::span<const SurfacePoint> group_at(std::span<const SurfacePoint> all, std::size_t begin) {
+    std::size_t end = begin + 1;
+    while (end < all.size() && all[end].feature == all[begin].feature && all[end].id == all[begin].id) ++end;
+    return all.subspan(begin, end - begin);
+}
+
 }  // namespace
+
+NearestPoint nearest_on_mesh(const Mesh& mesh, const Vec3& p, MeshScratch& scratch) {
+    // All triangles that share the nearest feature; rounding may put them at distances that differ a little.
+    const double distance = distance_to_mesh(mesh, p), reach = p.norm() + mesh.radius;
+    collect_near(mesh, p, distance + 1e-14 * reach + std::numeric_limits<double>::min(), scratch.candidates);
+    const std::span<const SurfacePoint> all = scratch.candidates;
+    std::size_t best = 0;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (all[i].distance < all[best].distance) best = i;
+    while (best > 0 && all[best - 1].feature == all[best].feature && all[best - 1].id == all[best].id) --best;
+    NearestPoint nearest{all[best], pseudonormal(mesh, group_at(all, best)).normalized(), distance};
+    if (nearest.outward.dot(p - nearest.at.point) < 0) nearest.height = -distance;
+    return nearest;
+}
 
 void mesh_sphere(const Mesh& mesh, const Vec3& center, double radius, MeshScratch& scratch,
                  std::vector<ContactRegion>& regions) {
@@ -92,15 +139,10 @@ void mesh_sphere(const Mesh& mesh, const Vec3& center, double radius, MeshScratc
     if (all.empty()) return;
     const auto nearest =
         std::min_element(all.begin(), all.end(), [](const auto& x, const auto& y) { return x.distance < y.distance; });
-    const auto group_at = [&](std::size_t begin) {
-        std::size_t end = begin + 1;
-        while (end < all.size() && all[end].feature == all[begin].feature && all[end].id == all[begin].id) ++end;
-        return std::span<const SurfacePoint>(all).subspan(begin, end - begin);
-    };
     std::size_t first_of_nearest = 0;
-    for (std::size_t i = 0; i < all.size(); i += group_at(i).size())
+    for (std::size_t i = 0; i < all.size(); i += group_at(all, i).size())
         if (all[i].feature == nearest->feature && all[i].id == nearest->id) first_of_nearest = i;
-    const Vec3 outward = pseudonormal(mesh, group_at(first_of_nearest));
+    const Vec3 outward = pseudonormal(mesh, group_at(all, first_of_nearest));
     const double side = outward.dot(center - nearest->point);
     if (side <= 0) {
         const Vec3 normal =
@@ -109,7 +151,7 @@ void mesh_sphere(const Mesh& mesh, const Vec3& center, double radius, MeshScratc
         return;
     }
     for (std::size_t i = 0; i < all.size();) {
-        const auto group = group_at(i);
+        const auto group = group_at(all, i);
         if (i == first_of_nearest || is_local_minimum(mesh, group)) {
             const Vec3 normal = (center - all[i].point) / all[i].distance;
             const double depth = radius - all[i].distance;

@@ -1,4 +1,4 @@
-// Contacts of a triangle mesh with a sphere or a half-space, by closest features.
+// Closest features of a triangle mesh, and by them its contacts with a sphere or a half-space.
 //
 // Body A is the mesh; regions stand in its body frame.
 #pragma once
@@ -26,6 +26,16 @@ struct MeshScratch {
     std::vector<std::uint32_t> parent;  // union-find over vertices
     std::vector<Vec3> points;
 };
+
+// The point of a closed surface nearest to p, and on which side of the surface p lies.
+struct NearestPoint {
+    SurfacePoint at;
+    Vec3 outward = Vec3::Zero();  // unit: the surface's normal there, the mean one on an edge or corner
+    double height = 0;            // m: the distance, < 0 inside
+};
+
+// Needs at least one triangle.
+NearestPoint nearest_on_mesh(const Mesh& mesh, const Vec3& p, MeshScratch& scratch);
 
 // One region for each local minimum of the distance from the centre to the surface that is below the radius; one only,
 // the nearest way out, when the centre is inside the mesh.

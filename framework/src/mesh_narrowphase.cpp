@@ -1,8 +1,10 @@
 #include <kolize/mesh_narrowphase.h>
 
 #include "contact_model/contact_model.h"
+#include "contact_model/containment.h"
 #include "mesh_contacts.h"
 #include "primitive_contacts.h"
+#include "sweep/workspace.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -132,23 +134,49 @@ private:
         pair.first_only = detail_ == Detail::overlap;
         pair.want_segments = averaged_ && !pair.first_only;
 
+        find_hits(pair);
+        if (pair.first_only)
+            find_overlap(pair);
+        else
+            find_regions(pair, a, b);
+        rotate_all(rotation);
+    }
+
+    // In canonical order, each pair once.
+    void find_hits(const MeshPair& pair) {
         auto& found = work_.triangles;
         found.clear();
         owner_.intersect_meshes(pair, found);
         work_.contacts.triangle_tests += found.tests;
         work_.contacts.triangle_hits += found.hits.size();
-        if (found.hits.empty()) return;
-        if (pair.first_only) {
-            work_.regions.push_back(ContactRegion{});
-            return;
-        }
+        const auto ids = [](const TriangleHit& hit) { return std::tie(hit.a, hit.b); };
         std::sort(found.hits.begin(), found.hits.end(),
-                  [](const TriangleHit& x, const TriangleHit& y) { return std::tie(x.a, x.b) < std::tie(y.a, y.b); });
+                  [&](const TriangleHit& x, const TriangleHit& y) { return ids(x) < ids(y); });
+        const auto end = std::unique(found.hits.begin(), found.hits.end(),
+                                     [&](const TriangleHit& x, const TriangleHit& y) { return ids(x) == ids(y); });
+        found.hits.erase(end, found.hits.end());
+    }
+
+    // The first hit decides, unless it is a mere touch that the contact model does not count.
+    void find_overlap(MeshPair pair) {
+        const auto& hits = work_.triangles.hits;
+        bool overlap = !hits.empty() && (averaged_ || surfaces_cross(pair, hits));
+        if (!overlap && !hits.empty()) {
+            pair.first_only = false;
+            find_hits(pair);
+            overlap = surfaces_cross(pair, hits);
+        }
+        if (overlap || contained_region(pair, work_.mesh)) work_.regions.push_back(ContactRegion{});
+    }
+
+    void find_regions(const MeshPair& pair, std::uint32_t a, std::uint32_t b) {
+        const auto& hits = work_.triangles.hits;
         if (averaged_)
-            averaged_region(pair, found.hits, world_.is_static[a], world_.is_static[b], work_.contour, work_.regions);
+            averaged_region(pair, hits, world_.is_static[a], world_.is_static[b], work_.contour, work_.regions);
         else
-            contour_regions(pair, found.hits, work_.contour, work_.regions);
-        rotate_all(rotation);
+            contour_regions(pair, hits, work_.contour, work_.regions);
+        if (!work_.regions.empty()) return;
+        if (const auto region = contained_region(pair, work_.mesh)) work_.regions.push_back(*region);
     }
 
     void rotate_all(const Mat3& rotation) {
@@ -202,7 +230,11 @@ Detail MeshNarrowphase::gives() const { return contact == "averaged" ? Detail::n
 void MeshNarrowphase::attach(Host& host) {
     Narrowphase::attach(host);
     workspaces_.clear();
-    for (std::size_t i = 0; i < max_chunks; ++i) workspaces_.push_back(std::make_unique<Workspace>());
+    sweeps_.clear();
+    for (std::size_t i = 0; i < max_chunks; ++i) {
+        workspaces_.push_back(std::make_unique<Workspace>());
+        sweeps_.push_back(std::make_unique<SweepWorkspace>());
+    }
 }
 
 // Sizes every workspace for the largest mesh, so that which pair comes to which chunk costs no allocation later.

@@ -11,8 +11,8 @@ bool fits(const std::vector<std::string>& wanted, const std::string& a, const st
     return (a == wanted[0] && b == wanted[1]) || (a == wanted[1] && b == wanted[0]);
 }
 
-std::string names_that(const PluginLibrary& plugins, StageKind stage, bool (*would_do)(const Capabilities&, std::uint32_t),
-                       std::uint32_t argument) {
+std::string names_that(const PluginLibrary& plugins, StageKind stage,
+                       bool (*would_do)(const Capabilities&, std::uint32_t), std::uint32_t argument) {
     std::string names;
     for (const LoadedPlugin& plugin : plugins.plugins())
         if (plugin.descriptor->stage == stage && would_do(plugin.descriptor->capabilities, argument))
@@ -28,22 +28,37 @@ void Pipeline::negotiate(const PipelineConfig& config, const PluginLibrary& plug
     for (std::uint32_t body = 0; body < world.size(); ++body) {
         const ShapeKind kind = world.shape_of(body).kind;
         if (!(narrow.shape_kinds & bit(kind)))
-            throw Error(config.narrowphase.where,
-                        who + " does not take shapes of kind " + to_string(kind) + " (body '" + world.name[body] + "'); " +
-                            names_that(plugins, StageKind::narrowphase,
-                                       [](const Capabilities& c, std::uint32_t wanted) { return (c.shape_kinds & wanted) != 0; },
-                                       bit(kind)));
+            throw Error(
+                config.narrowphase.where,
+                who + " does not take shapes of kind " + to_string(kind) + " (body '" + world.name[body] + "'); " +
+                    names_that(
+                        plugins, StageKind::narrowphase,
+                        [](const Capabilities& c, std::uint32_t wanted) { return (c.shape_kinds & wanted) != 0; },
+                        bit(kind)));
     }
+    for (std::uint32_t body = 0; body < world.size(); ++body)
+        if (const Mesh* mesh = world.shape_of(body).mesh.get();
+            config.step.mode != "continuous" && mesh && !mesh->closed)
+            throw Error(config.step.where, "stepping '" + config.step.mode +
+                                               "' tells inside from outside, and the surface of body '" +
+                                               world.name[body] + "' is open; take mode = \"continuous\"");
+    if (config.step.mode == "continuous" && !narrow.time_of_impact)
+        throw Error(config.narrowphase.where,
+                    who + " does not find times of impact, which stepping 'continuous' needs; " +
+                        names_that(
+                            plugins, StageKind::narrowphase,
+                            [](const Capabilities& c, std::uint32_t) { return c.time_of_impact; }, 0));
     for (std::size_t i = 0; i < rules.size(); ++i) {
         const Capabilities& response = rules[i].plugin->descriptor->capabilities;
         const Detail given = narrowphase->gives();
         if (given < response.needs)
             throw Error(config.responses[i].stage.where,
-                        "response '" + config.responses[i].stage.plugin + "' needs " + to_string(response.needs) + ", but " +
-                            who + " as configured gives only " + to_string(given) + "; " +
-                            names_that(plugins, StageKind::narrowphase,
-                                       [](const Capabilities& c, std::uint32_t needed) { return c.gives >= Detail(needed); },
-                                       static_cast<std::uint32_t>(response.needs)));
+                        "response '" + config.responses[i].stage.plugin + "' needs " + to_string(response.needs) +
+                            ", but " + who + " as configured gives only " + to_string(given) + "; " +
+                            names_that(
+                                plugins, StageKind::narrowphase,
+                                [](const Capabilities& c, std::uint32_t needed) { return c.gives >= Detail(needed); },
+                                static_cast<std::uint32_t>(response.needs)));
         rules[i].detail = std::min(given, response.uses);
     }
     const std::size_t kinds = world.kinds.size();

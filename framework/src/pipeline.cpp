@@ -29,12 +29,15 @@ Pipeline::Pipeline(const Scene& scene, const PluginLibrary& plugins, Host& host,
       broadphase(plugins.make<Broadphase>(scene.pipeline.broadphase, host)),
       narrowphase(plugins.make<Narrowphase>(scene.pipeline.narrowphase, host)),
       host_(host),
-      integrator_(make_integrator(scene.pipeline.step.integrator)) {
+      integrator_name_(scene.pipeline.step.integrator),
+      integrator_(make_integrator(scene.pipeline.step.integrator)),
+      first_step_(scene.capsule_step.value_or(0)) {
     for (const ResponseRule& rule : scene.pipeline.responses)
         rules.push_back({&plugins.require(StageKind::response, rule.stage.plugin, rule.stage.where),
                          plugins.make<Response>(rule.stage, host),
                          rule.kinds,
                          Detail::overlap,
+                         {},
                          {},
                          {},
                          {}});
@@ -46,18 +49,20 @@ Pipeline::Pipeline(const Scene& scene, const PluginLibrary& plugins, Host& host,
             throw Error(scene.pipeline.narrowphase.where,
                         "narrowphase '" + scene.pipeline.narrowphase.plugin + "' " + e.what());
     }
-    for (std::size_t i = 0; i < scene.rooms.size(); ++i) add_walls(world, scene.rooms[i], walls, i);
+    for (std::size_t i = 0; i < scene.rooms.size() && !scene.capsule_step; ++i)
+        add_walls(world, scene.rooms[i], walls, i);
     negotiate(scene.pipeline, plugins);
     use_bounding_spheres();
     narrowphase->prepare(world);
     number_rows();
     reserve();
     measure.start(world, scene.rooms, expected_steps);
+    if (scene.pipeline.ledger.check) ledger.emplace(scene.pipeline.ledger, world);
 }
 
 // Room for a dense crowd, so that a new record of contacts in a long run costs no allocation.
 void Pipeline::reserve() {
-    const std::size_t usual_pairs = 8 * world.size(), usual_contacts = 4 * usual_pairs;
+    const std::size_t usual_pairs = 16 * world.size(), usual_contacts = 4 * usual_pairs;
     for (auto* list : {&pairs, &found_, &routed_}) list->reserve(usual_pairs);
     detail_.reserve(usual_pairs);
     rule_.reserve(usual_pairs);
@@ -66,8 +71,12 @@ void Pipeline::reserve() {
         rule.contacts.reserve(usual_contacts);
         rule.rows.reserve(usual_contacts);
         rule.hit.reserve(usual_contacts);
+        rule.before.reserve(2 * usual_contacts);
     }
     events.reserve(2 * world.size());
+    one_pair_.rows.reserve(256);
+    before_.reserve(world.size());
+    is_partner_.reserve(world.size());
 }
 
 void Pipeline::number_rows() {
@@ -84,18 +93,18 @@ void Pipeline::number_rows() {
         rows_.push_back(body);
         row_is_static_.push_back(world.is_static[body]);
     }
+    row_of_.assign(world.size(), no_row);
+    for (std::uint32_t row = 0; row < rows_.size(); ++row) row_of_[rows_[row]] = row;
     bounds_.resize(rows_.size());
     for (std::size_t row = 0; row < rows_.size(); ++row) bounds_[row] = world_bounds(world, rows_[row]);
 }
 
 // ---------------------------------------------------------------------------------------------- stages
 
-template <class Call>
-void Pipeline::run_stage(StageKind kind, const char* plugin, Call&& call) {
-    const auto failed = [&](const std::string& what) {
-        throw std::runtime_error(std::string(to_string(kind)) + " '" + plugin + "' failed at step " +
-                                 std::to_string(measure.steps) + ": " + what);
-    };
+template <class Call, class Blame>
+void Pipeline::run_stage(StageKind kind, const char* plugin, Call&& call, Blame&& blame) {
+    const auto failed = [&](const std::string& what) { fail(to_string(kind), plugin, what + blame()); };
+    if (ledger) ledger->before_stage(world);
     const auto start = StageClock::Clock::now();
     try {
         call();
@@ -108,18 +117,33 @@ void Pipeline::run_stage(StageKind kind, const char* plugin, Call&& call) {
                         : kind == StageKind::narrowphase ? Phase::narrowphase
                                                          : Phase::response;
     measure.clock.add(phase, StageClock::Clock::now() - start);
+    if (ledger && kind != StageKind::response) ledger->after_search(world, kind, plugin);
 }
 
-void Pipeline::begin_step() { events.clear(); }
+void Pipeline::begin_step(double dt) {
+    events.clear();
+    if (ledger) ledger->begin_step(step_number(), static_cast<double>(step_number()) * dt);
+}
 
-void Pipeline::end_step(double dt) { measure.end_step(world, dt); }
+void Pipeline::end_step(double dt) {
+    require_finite_world();
+    measure.end_step(world, dt);
+}
+
+void Pipeline::moved(std::uint32_t body, const BodyState& before, const BodyState& after, double time) {
+    require_finite_motion(body, after);
+    if (ledger) ledger->after_motion(world, body, before, after, time, "integrator", integrator_name_);
+    measure.moved(world, body, before, after, time);
+}
 
 void Pipeline::integrate(double dt) {
-    measure.before_motion(world);
+    before_.clear();
+    for (std::uint32_t body = 0; body < world.size(); ++body) before_.push_back(world.state(body));
     const auto start = StageClock::Clock::now();
     integrator_->advance(world, dt, host_);
     measure.clock.add(Phase::integrate, StageClock::Clock::now() - start);
-    measure.after_motion(world, dt);
+    for (std::uint32_t body = 0; body < world.size(); ++body)
+        if (!world.is_static[body] && !world.removed[body]) moved(body, before_[body], world.state(body), dt);
 }
 
 void Pipeline::detect() {
@@ -139,84 +163,96 @@ void Pipeline::update_bounds() {
 
 void Pipeline::find_pairs() {
     found_.clear();
-    run_stage(StageKind::broadphase, broadphase_plugin->descriptor->name, [&] {
-        broadphase->find_pairs({bounds_, row_is_static_, generation_}, found_);
-        for (const Pair& pair : found_)
-            if (!(pair.a < pair.b && pair.b < rows_.size()))
-                throw std::runtime_error("it reported the pair " + pair_text(pair) + " of " +
-                                         std::to_string(rows_.size()) +
-                                         " rows; a pair is two rows, the lower one first");
-    });
+    run_stage(
+        StageKind::broadphase, broadphase_plugin->descriptor->name,
+        [&] {
+            broadphase->find_pairs({bounds_, row_is_static_, generation_}, found_);
+            for (const Pair& pair : found_)
+                if (!(pair.a < pair.b && pair.b < rows_.size()))
+                    throw std::runtime_error("it reported the pair " + pair_text(pair) + " of " +
+                                             std::to_string(rows_.size()) +
+                                             " rows; a pair is two rows, the lower one first");
+        },
+        [] { return std::string(); });
     pairs.clear();
     for (const Pair& pair : found_) pairs.push_back({rows_[pair.a], rows_[pair.b]});
     add_half_space_pairs();
     std::sort(pairs.begin(), pairs.end());
     if (const auto twice = std::adjacent_find(pairs.begin(), pairs.end()); twice != pairs.end())
-        throw std::runtime_error("broadphase '" + std::string(broadphase_plugin->descriptor->name) +
-                                 "' failed at step " + std::to_string(measure.steps) + ": it reported the bodies " +
-                                 pair_text(*twice) + " twice");
+        fail("broadphase", broadphase_plugin->descriptor->name,
+             "it reported the bodies " + pair_text(*twice) + " twice");
     measure.pairs += pairs.size();
 }
 
 // A half-space has no finite box; its plane is the exact test against one.
+bool Pipeline::reaches_behind(const Aabb& box, std::uint32_t wall) const {
+    const Vec3 normal = world.orientation[wall] * world.shape_of(wall).normal;
+    const Vec3 lowest = (normal.array() > 0).select(box.min, box.max);
+    return normal.dot(lowest - world.position[wall]) <= 0;
+}
+
 void Pipeline::add_half_space_pairs() {
-    for (const std::uint32_t wall : unbounded_) {
-        const Vec3 normal = world.orientation[wall] * world.shape_of(wall).normal;
-        for (std::size_t row = 0; row < rows_.size(); ++row) {
-            if (row_is_static_[row]) continue;
-            const Aabb& box = bounds_[row];
-            const Vec3 lowest = (normal.array() > 0).select(box.min, box.max);
-            if (normal.dot(lowest - world.position[wall]) <= 0)
+    for (const std::uint32_t wall : unbounded_)
+        for (std::size_t row = 0; row < rows_.size(); ++row)
+            if (!row_is_static_[row] && reaches_behind(bounds_[row], wall))
                 pairs.push_back({std::min(wall, rows_[row]), std::max(wall, rows_[row])});
-        }
-    }
 }
 
 void Pipeline::route_pairs() {
     routed_.clear();
     detail_.clear();
     rule_.clear();
-    const std::size_t kinds = world.kinds.size();
-    for (const Pair& pair : pairs) {
-        const std::uint32_t rule = rule_of_kinds_[world.kind[pair.a] * kinds + world.kind[pair.b]];
-        if (rule == no_rule) continue;
-        routed_.push_back(pair);
-        detail_.push_back(rules[rule].detail);
-        rule_.push_back(rule);
-    }
+    for (const Pair& pair : pairs) route(pair);
+}
+
+bool Pipeline::route(const Pair& pair) {
+    const std::uint32_t rule = rule_of_kinds_[world.kind[pair.a] * world.kinds.size() + world.kind[pair.b]];
+    if (rule == no_rule) return false;
+    routed_.push_back(pair);
+    detail_.push_back(rules[rule].detail);
+    rule_.push_back(rule);
+    return true;
 }
 
 namespace {
 
 // What contact.h promises of a row; a plugin that claims more than it gives is found out here.
-std::string complaint(const Contact& c, Detail detail) {
+std::string complaint(const Contact& c, Detail detail, bool touching) {
     if (!c.normal.allFinite() || !c.arm_a.allFinite() || !c.arm_b.allFinite() || !std::isfinite(c.depth))
         return "a value that is not finite";
     if (detail == Detail::overlap) return "";
     if (!(std::abs(c.normal.norm() - 1) < 1e-6))
         return "a normal of length " + std::to_string(c.normal.norm()) + ", not 1";
-    if (!(c.depth > 0)) return "a depth of " + std::to_string(c.depth) + " m, not above 0";
+    if (!(c.depth > 0) && !(touching && c.depth == 0))
+        return "a depth of " + std::to_string(c.depth) + " m, not above 0";
     return "";
 }
 
 }  // namespace
 
+void Pipeline::require_fit(const Contact& contact, const Pair& asked, Detail detail, bool touching) const {
+    const Pair pair{contact.a, contact.b};
+    const std::string wrong =
+        pair == asked ? complaint(contact, detail, touching) : "a pair that was not asked for, or out of order";
+    if (!wrong.empty())
+        fail("narrowphase", narrowphase_plugin->descriptor->name,
+             "its contact of the bodies " + pair_text(pair) + " has " + wrong);
+}
+
 void Pipeline::find_contacts() {
     contacts.clear();
-    run_stage(StageKind::narrowphase, narrowphase_plugin->descriptor->name, [&] {
-        narrowphase->find_contacts({world, routed_, detail_}, contacts);
-    });
+    run_stage(
+        StageKind::narrowphase, narrowphase_plugin->descriptor->name,
+        [&] {
+            narrowphase->find_contacts({world, routed_, detail_}, contacts);
+        },
+        [&] { return blamed_pair(routed_, detail_); });
     std::size_t i = 0;  // rows and pairs stand in the same order
     for (Contact& contact : contacts.rows) {
         const Pair pair{contact.a, contact.b};
         while (i < routed_.size() && routed_[i] < pair) ++i;
-        const bool asked = i < routed_.size() && routed_[i] == pair;
-        const std::string wrong =
-            asked ? complaint(contact, detail_[i]) : "a pair that was not asked for, or out of order";
-        if (!wrong.empty())
-            throw std::runtime_error("narrowphase '" + std::string(narrowphase_plugin->descriptor->name) +
-                                     "' failed at step " + std::to_string(measure.steps) +
-                                     ": its contact of the bodies " + pair_text(pair) + " has " + wrong);
+        const bool any = i < routed_.size();
+        require_fit(contact, any ? routed_[i] : Pair{}, any ? detail_[i] : Detail::overlap, false);
         contact.rule = rule_[i];
     }
     measure.contacts += contacts.rows.size();
@@ -229,12 +265,14 @@ void Pipeline::respond(double dt) {
         rule.contacts.clear();
         rule.rows.clear();
         rule.hit.clear();
+        rule.before.clear();
     }
     for (std::size_t i = 0; i < contacts.rows.size(); ++i) {
         const Contact& c = contacts.rows[i];
         Rule& rule = rules[c.rule];
         rule.contacts.push_back(c);
         rule.rows.push_back(i);
+        for (const std::uint32_t body : {c.a, c.b}) rule.before.push_back(world.state(body));
         rule.hit.push_back(hit_bits(rule.kinds, world.kinds[world.kind[c.a]], world.kinds[world.kind[c.b]]));
     }
     for (Rule& rule : rules)
@@ -244,10 +282,18 @@ void Pipeline::respond(double dt) {
 }
 
 void Pipeline::respond_with(Rule& rule, double dt) {
+    const char* const plugin = rule.plugin->descriptor->name;
+    const std::size_t first_event = events.size();
     ResponseOutput output{events};
-    run_stage(StageKind::response, rule.plugin->descriptor->name, [&] {
-        rule.stage->respond({rule.contacts, rule.hit, dt}, world, output);
-    });
+    if (ledger) ledger->check_depths(rule.contacts, narrowphase_plugin->descriptor->name);
+    run_stage(
+        StageKind::response, plugin,
+        [&] {
+            rule.stage->respond({rule.contacts, rule.hit, dt}, world, output);
+        },
+        [&] { return blamed_pair(rule, dt); });
+    require_finite_response(rule, output.dissipated_J, first_event);
+    if (ledger) ledger->after_response(world, rule.contacts, output.dissipated_J, plugin);
     for (std::size_t i = 0; i < rule.contacts.size(); ++i)
         contacts.rows[rule.rows[i]].impulse = rule.contacts[i].impulse;
     measure.unresolved += output.unresolved;
@@ -266,6 +312,110 @@ void Pipeline::remove_bodies() {
 }
 
 // ---------------------------------------------------------------------------------------------- for steppings
+
+namespace {
+
+// A box around everything that a body covers on its way. Between two times the path of the centre leaves its chord by
+// at most an eighth of the acceleration times the time squared; a body that turns stays inside its own radius.
+Aabb swept_bounds(const World& world, std::uint32_t body, const Flow& flow, double from, double until) {
+    const BodyState start = flow.at(body, from), end = flow.at(body, until);
+    const MotionBound bound = flow.bound(body);
+    const Shape& shape = world.shape_of(body);
+    const double time = until - from;
+    const double bulge =
+        (bound.acceleration.norm() + bound.further_acceleration) * time * time / 8 + bound.velocity_error * time;
+    Vec3 half = Vec3::Constant(shape.radius);
+    Vec3 center = Vec3::Zero();
+    if (shape.kind != ShapeKind::sphere) {
+        const Mat3 rotation = start.orientation.toRotationMatrix();
+        const double turn = (bound.angular_speed + bound.angular_velocity_error) * time * shape.radius;
+        const Vec3 turned = rotation.cwiseAbs() * shape.bounds.half_extents() + Vec3::Constant(turn);
+        if ((turned.array() < shape.radius).all()) {
+            half = turned;
+            center = rotation * shape.bounds.center();
+        }
+    }
+    half += Vec3::Constant(bulge + 2 * touch_distance(world, body, body));
+    return {start.position.cwiseMin(end.position) + center - half,
+            start.position.cwiseMax(end.position) + center + half};
+}
+
+}  // namespace
+
+void Pipeline::find_candidates(const Flow& flow, double until) {
+    update_swept_bounds(flow, until);
+    find_pairs();
+    route_pairs();
+}
+
+void Pipeline::update_swept_bounds(const Flow& flow, double until) {
+    constexpr std::size_t grain = 256;
+    host_.parallel_for(rows_.size(), grain, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t row = begin; row < end; ++row)
+            if (!row_is_static_[row]) bounds_[row] = swept_bounds(world, rows_[row], flow, 0, until);
+    });
+    for (std::size_t row = 0; row < rows_.size(); ++row)
+        if (!bounds_[row].finite()) refuse_path(rows_[row], flow.at(rows_[row], until));
+}
+
+void Pipeline::add_candidates_of(std::uint32_t body, const Flow& flow, double from, double until) {
+    const std::uint32_t own = row_of_[body];
+    if (own == no_row) return;
+    bounds_[own] = swept_bounds(world, body, flow, from, until);
+    if (!bounds_[own].finite()) refuse_path(body, flow.at(body, until));
+    is_partner_.assign(world.size(), 0);
+    for (const Pair& pair : routed_)
+        if (pair.a == body || pair.b == body) is_partner_[pair.a] = is_partner_[pair.b] = 1;
+    const auto add = [&](std::uint32_t other) {
+        if (is_partner_[other] || other == body) return;
+        if (route({std::min(body, other), std::max(body, other)})) ++measure.pairs;
+    };
+    for (std::size_t row = 0; row < rows_.size(); ++row)
+        if (bounds_[row].overlaps(bounds_[own])) add(rows_[row]);
+    for (const std::uint32_t wall : unbounded_)
+        if (reaches_behind(bounds_[own], wall)) add(wall);
+}
+
+void Pipeline::find_impacts(std::span<const Pair> some_pairs, const Flow& flow, double from, double until,
+                            std::span<double> times) {
+    run_stage(
+        StageKind::narrowphase, narrowphase_plugin->descriptor->name,
+        [&] {
+            narrowphase->find_impacts({world, flow, some_pairs, from, until}, times);
+        },
+        [] { return std::string(); });
+    require_times(some_pairs, from, times);
+}
+
+bool Pipeline::add_contacts(std::size_t candidate, bool touching) {
+    const Pair& pair = routed_[candidate];
+    one_pair_.clear();
+    run_stage(
+        StageKind::narrowphase, narrowphase_plugin->descriptor->name,
+        [&] {
+            const NarrowphaseInput input{world, {&pair, 1}, {&detail_[candidate], 1}};
+            if (touching)
+                narrowphase->find_touching(input, one_pair_);
+            else
+                narrowphase->find_contacts(input, one_pair_);
+        },
+        [&] { return " (bodies " + pair_text(pair) + ")"; });
+    for (Contact& contact : one_pair_.rows) {
+        require_fit(contact, pair, detail_[candidate], touching);
+        contact.rule = rule_[candidate];
+        contacts.rows.push_back(contact);
+    }
+    measure.contacts += one_pair_.rows.size();
+    measure.triangle_tests += one_pair_.triangle_tests;
+    return !one_pair_.rows.empty();
+}
+
+// By insertion: stable without a buffer, and the rows are few.
+void Pipeline::sort_contacts() {
+    const auto before = [](const Contact& x, const Contact& y) { return Pair{x.a, x.b} < Pair{y.a, y.b}; };
+    for (auto row = contacts.rows.begin(); row != contacts.rows.end(); ++row)
+        std::rotate(std::upper_bound(contacts.rows.begin(), row, *row, before), row, row + 1);
+}
 
 bool Pipeline::approaching() const {
     return std::any_of(contacts.rows.begin(), contacts.rows.end(), [&](const Contact& c) {
@@ -293,10 +443,12 @@ void Pipeline::restore() {
 }
 
 void Pipeline::put_back(std::uint32_t body) {
+    const BodyState before = world.state(body);
     const Quat turned_back = saved_.orientation[body] * world.orientation[body].conjugate();
     world.angular_velocity[body] = turned_back * world.angular_velocity[body];
     world.position[body] = saved_.position[body];
     world.orientation[body] = saved_.orientation[body];
+    if (ledger) ledger->after_motion(world, body, before, world.state(body), 0, "stepping", "rollback");
 }
 
 }  // namespace kolize

@@ -31,18 +31,36 @@ private:
     double bound_;
 };
 
+Aabb bounds_of(const TriangleSoup& surface) {
+    Aabb box;
+    for (const Triangle& t : surface.triangles)
+        for (const std::uint32_t v : t) box.include(surface.vertices[v]);
+    return box;
+}
+
+// The vertices in a cube of unit size about the origin, where the boxes of a hierarchy are tight. Rounding keeps the
+// order of coordinates: boxes that overlap still do.
+TriangleSoup to_unit_cube(const TriangleSoup& surface, const Aabb& bounds) {
+    TriangleSoup result{{}, surface.triangles, {}, {}};
+    const double size = bounds.half_extents().maxCoeff();
+    const double scale = size > std::numeric_limits<double>::min() ? 0.5 / size : 1;
+    for (const Vec3& p : surface.vertices) result.vertices.push_back((p - bounds.center()) * scale);
+    return result;
+}
+
 bool opposite(double a, double b) { return (a < 0 && b > 0) || (a > 0 && b < 0); }
 
 class Finder {
 public:
     explicit Finder(const TriangleSoup& surface)
         : surface_(surface),
-          hierarchy_(build_hierarchy(surface.vertices, surface.triangles)),
-          largest_coordinate_(largest_coordinate(hierarchy_)),
-          volume_(largest_coordinate_) {
+          bounds_(bounds_of(surface)),
+          volume_(surface.triangles.empty() ? 0 : bounds_.min.cwiseAbs().cwiseMax(bounds_.max.cwiseAbs()).maxCoeff()) {
+        const TriangleSoup local = to_unit_cube(surface, bounds_);
+        hierarchy_ = build_hierarchy(local.vertices, local.triangles);
         boxes_.resize(surface.triangles.size());
         for (std::uint32_t t = 0; t < boxes_.size(); ++t)
-            for (const Vec3& p : corners(t)) boxes_[t].include(p);
+            for (const std::uint32_t v : local.triangles[t]) boxes_[t].include(local.vertices[v]);
     }
 
     SelfIntersections run() {
@@ -51,11 +69,6 @@ public:
     }
 
 private:
-    static double largest_coordinate(const Hierarchy& hierarchy) {
-        if (hierarchy.nodes.empty()) return 0;
-        return (hierarchy.nodes[0].center.cwiseAbs() + hierarchy.nodes[0].half).maxCoeff();
-    }
-
     Corners corners(std::uint32_t triangle) const {
         const auto& [a, b, c] = surface_.triangles[triangle];
         return {surface_.vertices[a], surface_.vertices[b], surface_.vertices[c]};
@@ -83,10 +96,11 @@ private:
     }
 
     // Centre and half extents of a node are exact, but not their sum.
-    bool is_apart(const HierarchyNode& node, const Aabb& box) const {
-        const auto slack = 2 * std::numeric_limits<double>::epsilon() * largest_coordinate_;
-        return (box.min.array() > (node.center + node.half).array() + slack).any() ||
-               (box.max.array() < (node.center - node.half).array() - slack).any();
+    static bool is_apart(const HierarchyNode& node, const Aabb& box) {
+        constexpr auto slack = 2 * std::numeric_limits<double>::epsilon();
+        const Vec3 center = node.center.cast<double>(), half = node.half.cast<double>();
+        return (box.min.array() > (center + half).array() + slack).any() ||
+               (box.max.array() < (center - half).array() - slack).any();
     }
 
     // Pairs come by their lower id, but by their higher one in any order.
@@ -120,10 +134,10 @@ private:
     }
 
     const TriangleSoup& surface_;
-    Hierarchy hierarchy_;
-    std::vector<Aabb> boxes_;  // of the triangles
-    double largest_coordinate_;
+    Aabb bounds_;
     CertainVolume volume_;
+    Hierarchy hierarchy_;      // in the unit cube
+    std::vector<Aabb> boxes_;  // of the triangles, in the unit cube
     SelfIntersections found_;
 };
 

@@ -91,4 +91,21 @@ Shape make_mesh(std::string name, const TriangleSoup& closed_surface) {
     return shape;
 }
 
+Shape make_surface(std::string name, const TriangleSoup& triangles) {
+    require(!triangles.triangles.empty(), "the surface has no triangle");
+    Aabb bounds;
+    for (const Triangle& triangle : triangles.triangles)
+        for (const std::uint32_t v : triangle) bounds.include(triangles.vertices[v]);
+    TriangleSoup body = triangles;
+    for (Vec3& vertex : body.vertices) vertex -= bounds.center();
+    Shape shape;
+    shape.name = std::move(name);
+    shape.kind = ShapeKind::mesh;
+    shape.mesh = build_mesh(body, false);
+    shape.radius = shape.mesh->radius;
+    shape.bounds = shape.mesh->bounds;
+    shape.center_in_model = bounds.center();
+    return shape;
+}
+
 }  // namespace kolize

@@ -7,19 +7,54 @@
 
 namespace kolize {
 
+namespace {
+
+// What a step changes, as it was when the step began.
+struct StepStart {
+    std::uint64_t step = 0;
+    std::vector<Vec3> position, velocity, angular_velocity;
+    std::vector<Quat> orientation;
+    std::vector<std::uint8_t> removed;
+
+    void take(const World& world, std::uint64_t number) {
+        step = number;
+        position = world.position;  // assignment re-uses the buffers
+        velocity = world.velocity;
+        angular_velocity = world.angular_velocity;
+        orientation = world.orientation;
+        removed = world.removed;
+    }
+    void give(World& world) const {
+        world.position = position;
+        world.velocity = velocity;
+        world.angular_velocity = angular_velocity;
+        world.orientation = orientation;
+        world.removed = removed;
+    }
+};
+
+}  // namespace
+
 struct Simulation::State {
     State(const Scene& scene, const PluginLibrary& plugins, Host& host, std::uint64_t expected_steps)
         : file(scene.file),
+          rooms(scene.rooms),
           config(scene.pipeline),
           host(host),
           pipeline(scene, plugins, host, expected_steps),
-          stepping(make_stepping(config.step)) {}
+          stepping(make_stepping(config.step)),
+          keeps_steps(config.ledger.check) {
+        start.take(pipeline.world, pipeline.step_number());
+    }
 
     std::string file;
+    std::vector<Room> rooms;
     PipelineConfig config;
     Host& host;
     Pipeline pipeline;
     std::unique_ptr<Stepping> stepping;
+    bool keeps_steps;
+    StepStart start;
 };
 
 Simulation::Simulation(const Scene& scene, const PluginLibrary& plugins, Host& host, std::uint64_t expected_steps)
@@ -30,7 +65,8 @@ Simulation::~Simulation() = default;
 void Simulation::step() {
     Pipeline& pipeline = state_->pipeline;
     const double dt = state_->config.step.dt;
-    pipeline.begin_step();
+    if (state_->keeps_steps && !first_break()) state_->start.take(pipeline.world, pipeline.step_number());
+    pipeline.begin_step(dt);
     const auto start = StageClock::Clock::now();
     state_->stepping->step(pipeline, dt);
     pipeline.measure.clock.add(Phase::step, StageClock::Clock::now() - start);
@@ -109,6 +145,45 @@ std::vector<EffectiveStage> Simulation::responses() const {
     std::vector<EffectiveStage> all;
     for (const Rule& rule : state_->pipeline.rules) all.push_back(effective(*rule.plugin, *rule.stage, rule.kinds));
     return all;
+}
+
+const std::optional<LedgerBreak>& Simulation::first_break() const {
+    static const std::optional<LedgerBreak> none;
+    return state_->pipeline.ledger ? state_->pipeline.ledger->first_break() : none;
+}
+
+void Simulation::keep_steps() { state_->keeps_steps = true; }
+
+namespace {
+
+StageConfig in_force(const EffectiveStage& stage) {
+    StageConfig config{stage.plugin, {}, {}};
+    for (const auto& [name, value] : stage.settings) config.settings[name] = {value, {}};
+    return config;
+}
+
+}  // namespace
+
+Scene Simulation::capture() const {
+    Scene scene;
+    scene.file = state_->file;
+    scene.world = world();
+    scene.rooms = state_->rooms;
+    scene.pipeline = state_->config;
+    scene.pipeline.broadphase = in_force(broadphase());
+    scene.pipeline.narrowphase = in_force(narrowphase());
+    if (!scene.rooms.empty()) scene.pipeline.walls = walls();
+    const std::vector<EffectiveStage> stages = responses();
+    for (std::size_t i = 0; i < stages.size(); ++i) scene.pipeline.responses[i].stage = in_force(stages[i]);
+    scene.capsule_step = state_->pipeline.step_number();
+    return scene;
+}
+
+Scene Simulation::capture_failure() const {
+    Scene scene = capture();
+    state_->start.give(scene.world);
+    scene.capsule_step = state_->start.step;
+    return scene;
 }
 
 }  // namespace kolize

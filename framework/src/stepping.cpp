@@ -1,5 +1,7 @@
 #include "stepping.h"
 
+#include "event_stepping.h"
+
 #include <stdexcept>
 
 namespace kolize {
@@ -44,56 +46,14 @@ private:
     std::vector<std::uint8_t> is_back_;
 };
 
-class Bisection final : public Stepping {
-public:
-    Bisection(double tolerance, int max_impacts) : tolerance_(tolerance), max_impacts_(max_impacts) {}
-
-    void step(Pipeline& pipeline, double dt) override {
-        double left = dt;
-        for (int impact = 0; impact < max_impacts_; ++impact) {
-            pipeline.save();
-            advance(pipeline, left);
-            if (!pipeline.approaching()) return pipeline.respond(left);
-            const double taken = advance_to_impact(pipeline, left, tolerance_ * dt);
-            pipeline.respond(taken);
-            left -= taken;
-            if (!(left > 0)) return;
-        }
-        advance(pipeline, left);
-        pipeline.respond(left);
-    }
-
-private:
-    static void advance(Pipeline& pipeline, double time) {
-        pipeline.integrate(time);
-        pipeline.detect();
-    }
-
-    // Leaves the world where something begins to approach in contact, found to the tolerance. Returns the time taken.
-    static double advance_to_impact(Pipeline& pipeline, double time, double tolerance) {
-        double before = 0, after = time;
-        while (after - before > tolerance) {
-            const double middle = 0.5 * (before + after);
-            pipeline.restore();
-            advance(pipeline, middle);
-            (pipeline.approaching() ? after : before) = middle;
-        }
-        pipeline.restore();
-        advance(pipeline, after);
-        return after;
-    }
-
-    double tolerance_;
-    int max_impacts_;
-};
-
 }  // namespace
 
 std::unique_ptr<Stepping> make_stepping(const StepConfig& config) {
     if (config.mode == "discrete") return std::make_unique<Discrete>();
     if (config.mode == "rollback") return std::make_unique<Rollback>();
-    if (config.mode == "bisection") return std::make_unique<Bisection>(config.tolerance, config.max_impacts);
-    throw std::invalid_argument("step.mode must be discrete, rollback or bisection, is " + config.mode);
+    if (config.mode == "bisection") return make_bisection(config);
+    if (config.mode == "continuous") return make_continuous(config);
+    throw std::invalid_argument("step.mode must be discrete, rollback, bisection or continuous, is " + config.mode);
 }
 
 }  // namespace kolize

@@ -38,6 +38,8 @@ void require_usable(const std::string& who, const BodyDescription& body, const W
         refuse(who, "a static body never moves; leave out its velocities or make it dynamic");
     if (!body.is_static && world.shapes[body.shape].kind == ShapeKind::half_space)
         refuse(who, "a half_space has no mass; make it static");
+    const Mesh* mesh = world.shapes[body.shape].mesh.get();
+    if (!body.is_static && mesh && !mesh->closed) refuse(who, "an open surface has no mass; make the body static");
 }
 
 double mass_of(const std::string& who, const BodyDescription& body, const World& world) {
@@ -97,16 +99,20 @@ Mat3 World::world_inverse_inertia(std::uint32_t body) const {
     return rotation * inverse_inertia[body].asDiagonal() * rotation.transpose();
 }
 
-Vec3 World::angular_momentum(std::uint32_t body) const {
+Vec3 World::angular_momentum(std::uint32_t body) const { return angular_momentum(body, state(body)); }
+
+double World::kinetic_energy(std::uint32_t body) const { return kinetic_energy(body, state(body)); }
+
+Vec3 World::angular_momentum(std::uint32_t body, const BodyState& state) const {
     if (is_static[body]) return Vec3::Zero();
-    const Mat3 rotation = orientation[body].toRotationMatrix();
-    return rotation * (rotation.transpose() * angular_velocity[body]).cwiseQuotient(inverse_inertia[body]);
+    const Mat3 rotation = state.orientation.toRotationMatrix();
+    return rotation * (rotation.transpose() * state.angular_velocity).cwiseQuotient(inverse_inertia[body]);
 }
 
-double World::kinetic_energy(std::uint32_t body) const {
+double World::kinetic_energy(std::uint32_t body, const BodyState& state) const {
     if (is_static[body]) return 0;
-    return 0.5 *
-           (velocity[body].squaredNorm() / inverse_mass[body] + angular_velocity[body].dot(angular_momentum(body)));
+    return 0.5 * (state.velocity.squaredNorm() / inverse_mass[body] +
+                  state.angular_velocity.dot(angular_momentum(body, state)));
 }
 
 std::uint32_t World::intern_kind(const std::string& kind_name) {

@@ -1,200 +1,227 @@
 // Impulse response: rigid bodies bounce off each other and turn, without friction.
 //
 // What     A contact that approaches gets the impulse that sends its normal velocity back, times the restitution, with
-//          the full inertia of both bodies. Contacts that share bodies are answered by sequential reflection: the one
-//          that approaches fastest is reflected, again and again, until none approaches. They are answered one by one
-//          and never averaged: a body that touches at several places cannot be let in at one of them.
-// Source   One contact: Mirtich, "Impulse-based dynamic simulation of rigid body systems", 1996, 3.2; Hecker, "Physics,
-//          part 3: collision response", 1997. Many: Vouga, Smith, Kaufman, Tamstorf, Grinspun, "All's well that ends
-//          well: guaranteed resolution of simultaneous rigid body impact", ACM TOG 36(4), 2017 (it ends after finitely
-//          many reflections if the bodies can part at all).
-// Cost     Per impulse one scan over the speeds of its island (the contacts linked through moving bodies). A handful of
-//          impulses an island is usual.
+//          the full inertia of both bodies. Contacts that share bodies are answered again and again until none
+//          approaches, never averaged: a body that touches at several places cannot be let in at one of them. Where one
+//          body hits several at once physics leaves the outcome open, and `order` decides:
+//            sequential  one contact at a time, the one that approaches fastest. Of approaches that are the same to the
+//                        last bit the first in canonical order: nothing else depends on how bodies are numbered.
+//            symmetric   all that approach, along the joint impulse that would stop them together. Keeps the symmetry
+//                        of a scene, and no two contacts change places when bodies are numbered otherwise.
+//          Below restitution 1 bounces between several contacts become ever smaller. When a thousandth of the speed is
+//          left, or max_impulses is reached, the rest of the approach is stopped in one inelastic impact. Restitution 0
+//          is that impact alone.
+// Source   One contact: Mirtich, "Impulse-based dynamic simulation of rigid body systems", 1996, 3.2. Sequential:
+// Vouga,
+//          Smith, Kaufman, Tamstorf, Grinspun, "All's well that ends well: guaranteed resolution of simultaneous rigid
+//          body impact", ACM TOG 36(4), 2017 (it ends after finitely many reflections if the bodies can part at all).
+//          Symmetric: Smith, Kaufman, Vouga, Tamstorf, Grinspun, "Reflections on simultaneous impact", ACM TOG 31(4),
+//          2012, generalized reflections. Inelastic: Moreau, "Unilateral contact and dry friction in finite freedom
+//          dynamics", 1988.
+// Cost     Sequential: per impulse the contacts of the two bodies, times the logarithm of those of the island (the
+//          contacts linked through moving bodies). Symmetric: per pass all contacts of the island, and a linear system
+//          over those that approach. A handful of impulses or passes an island is usual.
 // Accuracy With restitution 1 kinetic energy is kept to rounding, whatever the contact points, normals and inertia,
-//          because the impulse and the velocity change use the same inverse mass matrix. Momentum and angular momentum
-//          of a pair of dynamic bodies always are. Where several outcomes are lawful (one ball hits two at once) the
-//          order of reflections decides. Below restitution 1 many contacts converge geometrically, and may be left
-//          unresolved.
+//          because the impulse and the velocity change use the same inverse mass matrix; below 1 what is lost is
+//          reported to rounding. Momentum and angular momentum of a pair of dynamic bodies always are kept.
 // Choose   for bodies whose rotation matters. For balls that only bounce, simple_bounce is cheaper.
+#include <kolize/joint_impulse.h>
 #include <kolize/plugin.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace {
 
 using namespace kolize;
 
-constexpr std::uint32_t none = ~0u;
 constexpr double relative_tolerance = 1e-12;  // approach below this share of the speeds at hand is rounding
+constexpr double worth_a_bounce = 1e-3;       // share of the first speed below which bounces end in rest
+constexpr int most_stops = 64;                // inelastic impacts of an island: one, and what rounding left of it
 
-// A dynamic body that has a contact in this call.
-struct Body {
-    std::uint32_t id = 0;      // in the world
-    std::uint32_t parent = 0;  // union-find forest of the islands, by index into bodies_
-    Mat3 inverse_inertia;      // world axes; the one that both K and the velocity change are made from
+// The least of a row of numbers that change one at a time: a tournament tree.
+class Least {
+public:
+    void reserve(std::size_t count) {
+        values_.reserve(count);
+        winners_.reserve(2 * count);
+    }
+    void add(double value) { values_.push_back(value); }
+    void clear() { values_.clear(); }
+    // Once all are added.
+    void play() {
+        winners_.resize(2 * values_.size());
+        std::iota(winners_.begin() + values_.size(), winners_.end(), 0);
+        for (std::size_t node = values_.size(); node-- > 1;) play(node);
+    }
+    void set(std::size_t i, double value) {
+        values_[i] = value;
+        for (std::size_t node = (i + values_.size()) / 2; node > 0; node /= 2) play(node);
+    }
+    // The first of equals.
+    std::size_t index() const { return winners_[1]; }
+    double value() const { return values_[index()]; }
+
+private:
+    void play(std::size_t node) {
+        const std::uint32_t a = winners_[2 * node], b = winners_[2 * node + 1];
+        const bool b_wins = values_[b] < values_[a] || (values_[b] == values_[a] && b < a);
+        winners_[node] = b_wins ? b : a;
+    }
+
+    std::vector<double> values_;
+    // Node i has met node i + 1 in node i / 2, up to the root 1. The leaves are behind: value i at count + i.
+    std::vector<std::uint32_t> winners_;
 };
-
-// A contact as the rows J of the constraint and M^-1 J^T of the velocity change.
-struct Row {
-    Contact* contact = nullptr;
-    Vec3 moment_a = Vec3::Zero();  // arm x normal
-    Vec3 moment_b = Vec3::Zero();
-    Vec3 turn_a = Vec3::Zero();  // change of angular velocity per unit impulse
-    Vec3 turn_b = Vec3::Zero();
-    double k = 0;  // J M^-1 J^T: normal velocity per unit impulse, 1/kg
-    double restitution = 1;
-};
-
-struct IslandMember {
-    std::uint32_t island = 0;
-    std::uint32_t contact = 0;
-    friend auto operator<=>(const IslandMember&, const IslandMember&) = default;
-};
-
-double approach_speed(const Row& row, const World& world) {
-    const Contact& c = *row.contact;
-    return c.normal.dot(world.velocity[c.b] - world.velocity[c.a]) + row.moment_b.dot(world.angular_velocity[c.b]) -
-           row.moment_a.dot(world.angular_velocity[c.a]);
-}
-
-// The speeds that the approach speed is a difference of.
-double speed_scale(const Contact& c, const World& world) {
-    return world.velocity[c.a].norm() + world.angular_velocity[c.a].norm() * c.arm_a.norm() +
-           world.velocity[c.b].norm() + world.angular_velocity[c.b].norm() * c.arm_b.norm();
-}
-
-// Sends the row's normal velocity back; returns the kinetic energy lost, J.
-double reflect(Row& row, double speed, World& world) {
-    Contact& c = *row.contact;
-    const double impulse = -(1 + row.restitution) * speed / row.k;
-    world.velocity[c.a] -= impulse * world.inverse_mass[c.a] * c.normal;
-    world.velocity[c.b] += impulse * world.inverse_mass[c.b] * c.normal;
-    world.angular_velocity[c.a] -= impulse * row.turn_a;
-    world.angular_velocity[c.b] += impulse * row.turn_b;
-    c.impulse += impulse;
-    return (1 - row.restitution * row.restitution) * speed * speed / (2 * row.k);
-}
-
-bool share_dynamic_body(const Contact& c, const Contact& d, const World& world) {
-    const auto touches_d = [&](std::uint32_t body) { return !world.is_static[body] && (body == d.a || body == d.b); };
-    return touches_d(c.a) || touches_d(c.b);
-}
 
 class Impulse final : public Response {
 public:
     static void parameters(Parameters<Impulse>& p) {
+        p.add("order", &Impulse::order_)
+            .choices({"sequential", "symmetric"})
+            .doc("Contacts that approach at once: the fastest first, or all of them together.");
         p.add("max_impulses", &Impulse::max_impulses_)
             .range(1, 1e6)
-            .doc("Impulses per contact after which the rest of an island is left unresolved.");
+            .doc("Impulses per contact before the rest of an island is stopped (at restitution 1: given up).");
     }
 
     void respond(const ResponseInput& input, World& world, ResponseOutput& output) override {
-        find_islands(input, world);
-        build_rows(input, world);
-        for (std::size_t begin = 0, end = 0; begin < members_.size(); begin = end) {
-            while (end < members_.size() && members_[end].island == members_[begin].island) ++end;
-            resolve_island(begin, end, world, output);
-        }
-        for (const Body& body : bodies_) slot_[body.id] = none;
+        if (reserved_ < world.size()) reserve(world.size());
+        rows_.build(input, world);
+        for (const ImpactRows::Island& island : rows_.islands()) resolve({island, world, output});
     }
 
 private:
-    // Contacts are linked where they share a dynamic body: static ones pass nothing on.
-    void find_islands(const ResponseInput& input, const World& world) {
-        if (slot_.size() < world.size()) reserve(world.size());
-        bodies_.clear();
-        members_.clear();
-        for (const Contact& c : input.contacts) unite(slot_of(c.a, world), slot_of(c.b, world));
-        for (std::uint32_t i = 0; i < input.contacts.size(); ++i) {
-            const Contact& c = input.contacts[i];
-            const std::uint32_t slot = slot_of(world.is_static[c.a] ? c.b : c.a, world);
-            if (slot != none) members_.push_back({root(slot), i});
-        }
-        std::sort(members_.begin(), members_.end());
-    }
+    // An island, and what is known of it at the beginning.
+    struct Task {
+        ImpactRows::Island island;
+        World& world;
+        ResponseOutput& output;
+        double limit = 0;  // normal velocities below this approach, m/s
+        std::size_t impulses_left = 0;
+        bool elastic = true;  // restitution is 1 everywhere
+    };
 
     // Once, for a crowd in which every body touches several others: later records cost no allocation.
     void reserve(std::size_t world_size) {
-        slot_.resize(world_size, none);
-        bodies_.reserve(world_size);
-        members_.reserve(32 * world_size);
-        rows_.reserve(32 * world_size);
+        reserved_ = world_size;
         speeds_.reserve(32 * world_size);
+        chosen_.reserve(32 * world_size);
+        joint_.reserve(32 * world_size, world_size);
     }
 
-    std::uint32_t slot_of(std::uint32_t body, const World& world) {
-        if (world.is_static[body]) return none;
-        if (slot_[body] == none) {
-            slot_[body] = static_cast<std::uint32_t>(bodies_.size());
-            bodies_.push_back({body, slot_[body], world.world_inverse_inertia(body)});
+    void resolve(Task task) {
+        double scale = 0, liveliest = 0;
+        for (const ImpactRow& row : rows(task)) {
+            scale = std::max(scale, row.speed_scale(task.world));
+            liveliest = std::max(liveliest, row.restitution);
+            task.elastic = task.elastic && row.restitution == 1;
         }
-        return slot_[body];
+        task.limit = -relative_tolerance * scale;
+        task.impulses_left = bounces(liveliest) * rows(task).size();
+        order_ == "symmetric" ? reflect_together(task) : reflect_in_turn(task);
+        if (task.impulses_left > 0) return;
+        for (int i = 0; i < most_stops && !task.elastic && find_approaching(task) > 0; ++i) stop(task);
+        task.output.unresolved += find_approaching(task);
     }
 
-    std::uint32_t root(std::uint32_t slot) {
-        while (bodies_[slot].parent != slot) slot = bodies_[slot].parent = bodies_[bodies_[slot].parent].parent;
-        return slot;
+    std::span<const ImpactRow> rows(const Task& task) const {
+        return rows_.rows().subspan(task.island.begin, task.island.end - task.island.begin);
     }
 
-    // The smaller root wins: an island is named after its first body in canonical order.
-    void unite(std::uint32_t a, std::uint32_t b) {
-        if (a == none || b == none) return;
-        const auto [first, second] = std::minmax({root(a), root(b)});
-        bodies_[second].parent = first;
+    // Of one contact, until its speed is not worth another one.
+    std::size_t bounces(double restitution) const {
+        if (restitution >= 1) return max_impulses_;
+        return static_cast<std::size_t>(
+            std::min<double>(max_impulses_, std::ceil(std::log(worth_a_bounce) / std::log(restitution))));
     }
 
-    void build_rows(const ResponseInput& input, const World& world) {
-        rows_.clear();
-        for (const IslandMember& member : members_) {
-            Contact& c = input.contacts[member.contact];
-            c.impulse = 0;
-            Row& row = rows_.emplace_back();
-            row.contact = &c;
-            row.k = (world.inverse_mass[c.a] + world.inverse_mass[c.b]) * c.normal.squaredNorm();
-            row.k += add_rotation(c.a, c.arm_a, c.normal, row.moment_a, row.turn_a);
-            row.k += add_rotation(c.b, c.arm_b, c.normal, row.moment_b, row.turn_b);
-            row.restitution = world.restitution(c.a, c.b);
-        }
-    }
-
-    double add_rotation(std::uint32_t body, const Vec3& arm, const Vec3& normal, Vec3& moment, Vec3& turn) const {
-        if (slot_[body] == none) return 0;
-        moment = arm.cross(normal);
-        turn = bodies_[slot_[body]].inverse_inertia * moment;
-        return moment.dot(turn);
-    }
-
-    void resolve_island(std::size_t begin, std::size_t end, World& world, ResponseOutput& output) {
+    void reflect_in_turn(Task& task) {
         speeds_.clear();
-        double scale = 0;
-        for (std::size_t i = begin; i < end; ++i) {
-            speeds_.push_back(approach_speed(rows_[i], world));
-            scale = std::max(scale, speed_scale(*rows_[i].contact, world));
+        for (const ImpactRow& row : rows(task)) speeds_.add(row.normal_velocity(task.world));
+        speeds_.play();
+        for (; task.impulses_left > 0 && speeds_.value() < task.limit; --task.impulses_left) {
+            const ImpactRow& hit = rows(task)[speeds_.index()];
+            reflect(hit, speeds_.value(), task);
+            for (const std::uint32_t i : rows_.rows_of(hit.moving_a)) update_speed(i, task);
+            for (const std::uint32_t i : rows_.rows_of(hit.moving_b))
+                if (hit.moving_a == ImpactRow::fixed || !rows_.rows()[i].moves(hit.moving_a)) update_speed(i, task);
         }
-        const double limit = -relative_tolerance * scale;
-        for (std::size_t left = static_cast<std::size_t>(max_impulses_) * (end - begin); left > 0; --left) {
-            const auto fastest = std::min_element(speeds_.begin(), speeds_.end());
-            if (!(*fastest < limit)) return;
-            Row& hit = rows_[begin + (fastest - speeds_.begin())];
-            output.dissipated_J += reflect(hit, *fastest, world);
-            for (std::size_t i = begin; i < end; ++i)
-                if (share_dynamic_body(*rows_[i].contact, *hit.contact, world))
-                    speeds_[i - begin] = approach_speed(rows_[i], world);
-        }
-        output.unresolved += std::count_if(speeds_.begin(), speeds_.end(), [&](double s) { return s < limit; });
     }
 
+    void update_speed(std::uint32_t i, const Task& task) {
+        speeds_.set(i - task.island.begin, rows_.rows()[i].normal_velocity(task.world));
+    }
+
+    // The second impulse is what rounding left of the first: without it the error of k would add up where the same two
+    // bodies meet thousands of times.
+    void reflect(const ImpactRow& row, double speed, Task& task) {
+        const double restitution = row.restitution;
+        row.push(-(1 + restitution) * speed / row.k, task.world);
+        row.push(-(row.normal_velocity(task.world) + restitution * speed) / row.k, task.world);
+        task.output.dissipated_J += (1 - restitution * restitution) * speed * (speed / (2 * row.k));
+    }
+
+    void reflect_together(Task& task) {
+        for (; task.impulses_left > 0 && find_approaching(task) > 0; --task.impulses_left) {
+            const ImpactRow& first = rows_.rows()[chosen_.front()];
+            if (chosen_.size() == 1) {
+                reflect(first, first.normal_velocity(task.world), task);
+                continue;
+            }
+            joint_.solve(rows_, chosen_, task.world);
+            reflect_joint(restitution_of_joint(task.world), task);
+        }
+    }
+
+    // Stops what approaches, and everything that this would make approach.
+    void stop(Task& task) {
+        chosen_.resize(rows(task).size());
+        std::iota(chosen_.begin(), chosen_.end(), task.island.begin);
+        joint_.solve(rows_, chosen_, task.world);
+        reflect_joint(0, task);
+    }
+
+    // The rows of the island that approach, into chosen_; returns how many.
+    std::size_t find_approaching(const Task& task) {
+        chosen_.clear();
+        for (std::uint32_t i = task.island.begin; i < task.island.end; ++i)
+            if (rows_.rows()[i].normal_velocity(task.world) < task.limit) chosen_.push_back(i);
+        return chosen_.size();
+    }
+
+    // Each row counts by the energy that its impulse takes.
+    double restitution_of_joint(const World& world) const {
+        double sum = 0, energy = 0;
+        for (std::size_t i = 0; i < chosen_.size(); ++i) {
+            const ImpactRow& row = rows_.rows()[chosen_[i]];
+            const double share = joint_.impulse(i) * row.normal_velocity(world);
+            sum += row.restitution * share;
+            energy += share;
+        }
+        return energy < 0 ? sum / energy : 0;
+    }
+
+    void reflect_joint(double restitution, Task& task) {
+        const double times = (1 + restitution) * joint_.factor();
+        if (!(times > 0) || !std::isfinite(times)) return;
+        for (std::size_t i = 0; i < chosen_.size(); ++i)
+            rows_.rows()[chosen_[i]].push(times * joint_.impulse(i), task.world);
+        task.output.dissipated_J += (1 - restitution * restitution) * joint_.energy();
+    }
+
+    std::string order_ = "sequential";
     int max_impulses_ = 64;
 
-    std::vector<std::uint32_t> slot_;  // per body of the world: its place in bodies_, or none
-    std::vector<Body> bodies_;
-    std::vector<IslandMember> members_;  // sorted: the contacts of an island side by side, in canonical order
-    std::vector<Row> rows_;              // as members_
-    std::vector<double> speeds_;         // of one island's rows, m/s; negative where the bodies approach
+    std::size_t reserved_ = 0;  // bodies
+    ImpactRows rows_;
+    JointImpulse joint_;
+    Least speeds_;                       // normal velocities of one island's rows, m/s; negative where bodies approach
+    std::vector<std::uint32_t> chosen_;  // rows of rows_ that are answered together
 };
 
 }  // namespace
 
-KOLIZE_PLUGIN(Impulse, .name = "impulse", .summary = "rigid bodies bounce and turn: frictionless impulses, one by one",
-              .source = "Mirtich 1996, 3.2; Vouga et al. 2017, sequential reflection",
+KOLIZE_PLUGIN(Impulse, .name = "impulse", .summary = "rigid bodies bounce and turn: frictionless impulses",
+              .source = "Mirtich 1996, 3.2; Vouga et al. 2017, sequential; Smith et al. 2012, symmetric",
               .capabilities = {.needs = Detail::normal, .uses = Detail::manifold})

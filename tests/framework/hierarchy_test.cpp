@@ -28,6 +28,21 @@ bool holds(const HierarchyNode& node, const Vec3& p) {
     return true;
 }
 
+// A block's corners are those of its triangles, to half the spacing of floats there.
+void check_block(const TriangleBlock& block, std::uint32_t lane, const TriangleSoup& soup, std::uint32_t triangle) {
+    for (int corner = 0; corner < 3; ++corner)
+        for (int axis = 0; axis < 3; ++axis) {
+            const double exact = soup.vertices[soup.triangles[triangle][corner]][axis];
+            REQUIRE(std::abs(block.corners[corner][axis][lane] - exact) <= 0x1p-24 * std::abs(exact) + 0x1p-149);
+        }
+}
+
+void check_leaf(const Hierarchy& tree, const TriangleSoup& soup, const HierarchyNode& leaf) {
+    REQUIRE(leaf.first % TriangleBlock::size == 0);
+    for (std::uint32_t i = 0; i < leaf.count; ++i)
+        check_block(tree.blocks.at(leaf.first / TriangleBlock::size), i, soup, tree.order.at(leaf.first + i));
+}
+
 // Checks the tree below a node; returns the triangles in it and adds to the longest path.
 std::vector<std::uint32_t> walk(const Hierarchy& tree, const TriangleSoup& soup, std::uint32_t id, std::size_t depth,
                                 std::size_t& longest) {
@@ -37,6 +52,7 @@ std::vector<std::uint32_t> walk(const Hierarchy& tree, const TriangleSoup& soup,
     if (node.is_leaf()) {
         REQUIRE(node.count <= 4);
         for (std::uint32_t i = 0; i < node.count; ++i) triangles.push_back(tree.order.at(node.first + i));
+        if (soup.vertices.front().cwiseAbs().maxCoeff() < 1e38) check_leaf(tree, soup, node);
     } else {
         triangles = walk(tree, soup, node.first, depth + 1, longest);
         for (const std::uint32_t t : walk(tree, soup, node.first + 1, depth + 1, longest)) triangles.push_back(t);
@@ -63,10 +79,35 @@ TEST_CASE("Every node of a hierarchy holds all its triangles, and every triangle
     }
 }
 
+TEST_CASE("The boxes of a hierarchy hold meshes that float cannot, however large, small or far", "[hierarchy]") {
+    const double scale = GENERATE(1e-310, 1e-60, 1e-40, 1e-30, 1e30, 3e38, 1e60, 1e200, 1e306);
+    const double offset = GENERATE(0.0, 1.0, 1e7, -1e15);  // in sizes of the mesh
+    CAPTURE(scale, offset);
+    TriangleSoup soup = random_triangles(50, 3);
+    if (std::abs(offset) * scale > 1e300) return;  // double cannot hold that either
+    for (Vec3& p : soup.vertices) p = (p.array() + offset) * scale;
+    const Hierarchy tree = build_hierarchy(soup.vertices, soup.triangles);
+    std::size_t depth = 0;
+    CHECK(walk(tree, soup, 0, 0, depth).size() == 50);
+    for (const HierarchyNode& node : tree.nodes) {
+        CHECK(node.center.allFinite());
+        CHECK((node.half.array() >= 0).all());
+    }
+}
+
+TEST_CASE("The last block of a hierarchy is filled up with its last triangle", "[hierarchy]") {
+    const TriangleSoup soup = random_triangles(9, 4);
+    const Hierarchy tree = build_hierarchy(soup.vertices, soup.triangles);
+    REQUIRE(tree.blocks.size() == 3);
+    for (std::uint32_t lane = 0; lane < TriangleBlock::size; ++lane)
+        check_block(tree.blocks.back(), lane, soup, tree.order.back());
+}
+
 TEST_CASE("The hierarchy of an empty mesh has no nodes", "[hierarchy]") {
     const Hierarchy tree = build_hierarchy({}, {});
     CHECK(tree.nodes.empty());
     CHECK(tree.order.empty());
+    CHECK(tree.blocks.empty());
 }
 
 TEST_CASE("Triangles that all lie in one place are still split into small leaves", "[hierarchy]") {

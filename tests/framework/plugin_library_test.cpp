@@ -146,7 +146,8 @@ TEST_CASE("a plugin that is not found is an error that says where it was looked 
     const PluginLibrary library({first.path(), nowhere, second.path()});
     const std::string lists = "\n  found: fixture, twin\n  searched: " + first.path().string() + ", " + nowhere +
                               " (no such folder), " + second.path().string() +
-                              "\n  refused: " + first.file("other_api.so") + ": plugin API number: host 1, plugin 2";
+                              "\n  refused: " + first.file("other_api.so") + ": plugin API number: host " +
+                              std::to_string(plugin_api) + ", plugin 99";
     CHECK_THROWS_WITH(library.require(StageKind::broadphase, "fixtrue", {"scene.toml", 12, 10}),
                       "scene.toml:12:10: no broadphase 'fixtrue'; did you mean 'fixture'?" + lists);
     CHECK_THROWS_WITH(library.require(StageKind::broadphase, "octree"), "no broadphase 'octree'" + lists);

@@ -221,7 +221,7 @@ TEST_CASE("a pipeline file replaces whole tables of the scene", "[scene]") {
     folder.write("p.toml", "[step]\ndt = 1\n[[body]]\nshape = \"s\"\n");
     CHECK(folder.complaint({}, "p.toml") ==
           "p.toml:3:3: a pipeline file has no table 'body'; it may hold [step], [broadphase], [narrowphase], "
-          "[[response]] and [render]");
+          "[[response]], [ledger] and [render]");
     CHECK(folder.complaint({}, "q.toml") == "pipeline file 'q.toml' does not exist");
 }
 
@@ -329,8 +329,8 @@ TEST_CASE("what is wrong with a scene is said in one sentence with its place", "
         {"[step]\ndt = inf", "scene.toml:2:6: dt must be finite, is inf"},
         {"[step]\ntolerance = 2", "scene.toml:2:13: tolerance must be greater than 0 and at most 1, is 2"},
         {"[step]\nmax_impacts = 1.5", "scene.toml:2:15: max_impacts must be an integer, is 1.5"},
-        {"[step]\nmode = \"continuous\"",
-         "scene.toml:2:8: there is no mode 'continuous'; there are discrete, rollback, bisection"},
+        {"[step]\nmode = \"xx\"",
+         "scene.toml:2:8: there is no mode 'xx'; there are discrete, rollback, bisection, continuous"},
         {"[step]\nmode = \"rolback\"", "scene.toml:2:8: there is no mode 'rolback'; did you mean 'rollback'?"},
         {"[step]\nintegrator = \"pdmv5\"", "scene.toml:2:14: there is no integrator 'pdmv5'; did you mean 'pdmv4'?"},
         {"[[material]]\nrestitution = 1", "scene.toml:1:1: [[material]] needs name"},

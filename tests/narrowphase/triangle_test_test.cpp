@@ -1,6 +1,9 @@
 #include "framework/solids.h"
 #include "narrowphase/two_bodies.h"
+#include "oracle/exact_hulls.h"
 #include "oracle/exact_triangles.h"
+
+#include <kolize/mesh_narrowphase.h>
 
 #include <catch2/catch.hpp>
 
@@ -59,7 +62,72 @@ std::pair<int, int> wrong_of(const std::string& plugin, std::map<std::string, Va
     return {wrong, judged};
 }
 
+// The second triangle has a corner on the first one or on the line of one of its sides, but for a few roundings; now
+// and then all of it lies in the first one's plane.
+TrianglePair near_touch(std::mt19937& random) {
+    std::uniform_real_distribution<double> coordinate(-1, 1);
+    const auto any = [&] { return Vec3(coordinate(random), coordinate(random), coordinate(random)); };
+    TrianglePair pair;
+    for (int k = 0; k < 3; ++k) {
+        pair.a[k] = any();
+        pair.b[k] = any();
+    }
+    const auto in_plane = [&] {
+        const double s = 0.25 * int(random() % 6) - 0.25, t = random() % 3 ? 0.25 * int(random() % 6) - 0.25 : 0;
+        Vec3 p = pair.a[0] + s * (pair.a[1] - pair.a[0]) + t * (pair.a[2] - pair.a[0]);
+        for (double& x : p) x += (int(random() % 5) - 2) * 0x1p-54;
+        return p;
+    };
+    const bool coplanar = random() % 8 == 0;
+    for (int k = 0; k < (coplanar ? 3 : 1); ++k) pair.b[k] = in_plane();
+    return pair;
+}
+
+bool exact_answer(const TrianglePair& pair) {
+    constexpr int exponent = 120;  // no coordinate of near_touch has a finer bit than 2^-107
+    std::vector<oracle::BigPoint> hulls[2];
+    for (int k = 0; k < 3; ++k)
+        for (const bool of_a : {true, false}) {
+            const Vec3& p = of_a ? pair.a[k] : pair.b[k];
+            hulls[of_a].push_back(
+                {oracle::in_units(p[0], exponent), oracle::in_units(p[1], exponent), oracle::in_units(p[2], exponent)});
+        }
+    return oracle::hulls_intersect(hulls[0], hulls[1]);
+}
+
+// Answers of a triangle test by itself, with the pairs scaled by a power of two.
+std::vector<std::uint8_t> answers(const std::string& plugin, std::vector<TrianglePair> pairs, int exponent) {
+    for (TrianglePair& pair : pairs)
+        for (int k = 0; k < 3; ++k) {
+            pair.a[k] *= std::ldexp(1.0, exponent);
+            pair.b[k] *= std::ldexp(1.0, exponent);
+        }
+    const auto host = make_host(1);
+    const StagePtr<Narrowphase> stage =
+        library().make<Narrowphase>({.plugin = plugin, .where = {}, .settings = {}}, *host);
+    std::vector<std::uint8_t> hit(pairs.size(), 2);
+    dynamic_cast<const TriangleNarrowphase&>(*stage).intersect_triangles(pairs, hit, {});
+    return hit;
+}
+
 }  // namespace
+
+TEST_CASE("moller is exact where triangles touch or nearly do, at every scale", "[narrowphase]") {
+    std::mt19937 random(20260306);
+    std::vector<TrianglePair> pairs;
+    std::vector<std::uint8_t> expected;
+    for (int i = 0; i < 500; ++i) {
+        pairs.push_back(near_touch(random));
+        expected.push_back(exact_answer(pairs.back()));
+    }
+    const auto hits = std::count(expected.begin(), expected.end(), 1);
+    CHECK(hits > 100);
+    CHECK(hits < 400);
+    for (const int exponent : {-900, -600, -320, -100, 0, 30, 300, 320, 500, 1000}) {
+        CAPTURE(exponent);
+        CHECK(answers("moller", pairs, exponent) == expected);
+    }
+}
 
 TEST_CASE("triangle tests agree with exact arithmetic on random tetrahedra in general position", "[narrowphase]") {
     for (const char* plugin : {"moller", "fcl"}) {

@@ -8,11 +8,15 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+
 class ResponsePlugin {
 public:
-    // Parameters have their defaults but for the one that is named.
-    explicit ResponsePlugin(const std::string& name, const std::string& parameter = "", std::int64_t value = 0)
-        : host_(kolize::make_host(1)), stage_(make(name, parameter, value, *host_)) {}
+    using Settings = std::vector<std::pair<std::string, kolize::Value>>;
+
+    // Parameters that are not set have their defaults.
+    explicit ResponsePlugin(const std::string& name, const Settings& settings = {})
+        : host_(kolize::make_host(1)), stage_(make(name, settings, *host_)) {}
 
     // Answers the contacts; what comes out stands in the members below. Without `hit`, both bodies fit the rule.
     void respond(kolize::World& world, std::vector<kolize::Contact>& contacts, std::vector<std::uint8_t> hit = {}) {
@@ -37,11 +41,11 @@ private:
         return library;
     }
 
-    static kolize::StagePtr<kolize::Response> make(const std::string& name, const std::string& parameter,
-                                                   std::int64_t value, kolize::Host& host) {
+    static kolize::StagePtr<kolize::Response> make(const std::string& name, const Settings& settings,
+                                                   kolize::Host& host) {
         kolize::StageConfig config;
         config.plugin = name;
-        if (!parameter.empty()) config.settings[parameter].value = value;
+        for (const auto& [parameter, value] : settings) config.settings[parameter].value = value;
         return plugins().make<kolize::Response>(config, host);
     }
 
@@ -64,6 +68,38 @@ inline kolize::Contact contact_at(const kolize::World& world, std::uint32_t a, s
 // Velocity of B against A at the contact, along the normal; negative where they approach.
 inline double normal_velocity(const kolize::World& world, const kolize::Contact& c) {
     return c.normal.dot(world.velocity_at(c.b, c.arm_b) - world.velocity_at(c.a, c.arm_a));
+}
+
+// Orders the contacts as a narrowphase has to.
+inline void sort_canonically(std::vector<kolize::Contact>& contacts) {
+    std::stable_sort(contacts.begin(), contacts.end(), [](const kolize::Contact& c, const kolize::Contact& d) {
+        return kolize::Pair{c.a, c.b} < kolize::Pair{d.a, d.b};
+    });
+}
+
+// The fastest approach that is left at a contact, as a share of the speeds at the contacts before the response.
+inline double worst_approach(const kolize::World& before, const kolize::World& after,
+                             const std::vector<kolize::Contact>& contacts) {
+    double approach = 0, speed = 0;
+    for (const kolize::Contact& c : contacts) {
+        approach = std::max(approach, -normal_velocity(after, c));
+        speed = std::max(speed, before.velocity[c.a].norm() + before.angular_velocity[c.a].norm() * c.arm_a.norm() +
+                                    before.velocity[c.b].norm() + before.angular_velocity[c.b].norm() * c.arm_b.norm());
+    }
+    return approach > 0 ? approach / speed : 0;
+}
+
+// Contacts of bodies 0 and 1 at random points, with normals that lean from a common one by `spread` at most (as a
+// tangent; below a right angle at 1).
+inline std::vector<kolize::Contact> random_contacts(const kolize::World& world, Random& random, int count,
+                                                    double spread, double reach = 1) {
+    const kolize::Vec3 lead = random.direction();
+    std::vector<kolize::Contact> contacts;
+    for (int i = 0; i < count; ++i) {
+        const kolize::Vec3 normal = (lead + 0.999 * spread * random.direction()).normalized();
+        contacts.push_back(contact_at(world, 0, 1, reach * random.normal(), normal));
+    }
+    return contacts;
 }
 
 // A solid sphere of radius 1.
@@ -98,6 +134,7 @@ struct Invariants {
     double energy = 0;
     kolize::Vec3 momentum = kolize::Vec3::Zero();
     kolize::Vec3 angular_momentum = kolize::Vec3::Zero();
+    double momentum_scale = 0;  // what momentum and angular momentum are sums of: to compare their rounding with
 
     explicit Invariants(const kolize::World& world) {
         for (std::uint32_t i = 0; i < world.size(); ++i) {
@@ -106,6 +143,7 @@ struct Invariants {
             energy += world.kinetic_energy(i);
             momentum += p;
             angular_momentum += world.position[i].cross(p) + world.angular_momentum(i);
+            momentum_scale += (1 + world.position[i].norm()) * p.norm() + world.angular_momentum(i).norm();
         }
     }
 };

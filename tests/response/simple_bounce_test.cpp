@@ -74,7 +74,7 @@ TEST_CASE("A ball jammed between two obstacles is reported after the last pass",
     add_obstacle(world, Vec3(2, 0, 0));
     std::vector<Contact> contacts{contact_at(world, 0, 1, Vec3(-1, 0, 0), -Vec3::UnitX()),
                                   contact_at(world, 0, 2, Vec3(1, 0, 0), Vec3::UnitX())};
-    ResponsePlugin bounce("simple_bounce", "max_passes", 5);
+    ResponsePlugin bounce("simple_bounce", {{"max_passes", std::int64_t(5)}});
     bounce.respond(world, contacts);
     CHECK(bounce.unresolved == 1);
     CHECK(world.velocity[0].norm() == 1);

@@ -28,7 +28,7 @@ struct Contact {
     Vec3 arm_a = Vec3::Zero();   // contact point minus the centre of mass of A, world axes, m
     Vec3 arm_b = Vec3::Zero();   // the same point minus the centre of mass of B, world axes, m
     double depth = 0;    // m, > 0: longest chord of the overlap along the normal (of two convex primitives: how far
-                         // B has to move along it to separate)
+                         // B has to move along it to separate); 0 where bodies touch at the time of impact
     double impulse = 0;  // written by the response: normal impulse on B, N s, >= 0
 };
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <kolize/host.h>
-#include <kolize/world.h>
+#include <kolize/flow.h>
 
 #include <memory>
 #include <string>
@@ -16,11 +16,16 @@ public:
 
     // Moves every body that is neither static nor removed by dt seconds (dt > 0) under the world's forces.
     void advance(World& world, double dt, Host& host) const;
+    // The same for one body that is neither static nor removed, from a state of its own: its constants and the forces
+    // are the world's. Several threads may call at once.
+    virtual void advance_body(const World& world, std::uint32_t body, double dt, BodyState& state) const = 0;
+
+    // Bounds of the motion over `time` seconds from the state, done in calls of at most `call` seconds each.
+    MotionBound bound(const World& world, std::uint32_t body, const BodyState& state, double time, double call) const;
 
 protected:
-    // The moving bodies of [begin, end), each by its own state and constants and the world's forces alone. One call per
-    // chunk of bodies, possibly from several threads at once.
-    virtual void advance_bodies(World& world, std::size_t begin, std::size_t end, double dt) const = 0;
+    // Sets the two errors of the bound, whose other fields are known.
+    virtual void set_errors(const World& world, std::uint32_t body, double call, MotionBound& bound) const = 0;
 };
 
 // semi_implicit_euler  v += h a, then x += h v; omega kept constant in free rotation (no gyroscopic term)

@@ -61,6 +61,12 @@ public:
     void attach(Host& host) override;
     void prepare(const World& world) override;  // an overriding function calls this one first
     void find_contacts(const NarrowphaseInput& input, Contacts& contacts) final;
+    void find_impacts(const ImpactInput& input, std::span<double> times) final;
+    void find_touching(const NarrowphaseInput& input, Contacts& contacts) final;
+
+    // The triangles of two meshes that intersect, without contacts; the shapes are those prepared for. Clears nothing;
+    // appends. Called by several threads at once, each with its own `hits`; `hits` may be in any order.
+    virtual void intersect_meshes(const MeshPair& pair, TriangleHits& hits) const = 0;
 
     // contour  intersection segments joined into regions; a region's normal is the direction of its vector area
     // averaged the thesis's: mean of the intersection points, normal of the triangle or body that is hit
@@ -73,26 +79,23 @@ public:
             .doc("Contact model: how intersecting triangles become contacts.");
     }
 
-protected:
-    // Clears nothing; appends. Called by several threads at once, each with its own `hits`; `hits` may be in any order.
-    virtual void intersect_meshes(const MeshPair& pair, TriangleHits& hits) const = 0;
-
 private:
     friend class PairCollider;  // does one pair of bodies
     struct Workspace;
     std::vector<std::unique_ptr<Workspace>> workspaces_;  // one per chunk of pairs
+    struct SweepWorkspace;
+    std::vector<std::unique_ptr<SweepWorkspace>> sweeps_;  // likewise
 };
 
 // Walks the two hierarchies and hands candidate triangle pairs to the test in batches.
 class KOLIZE_API TriangleNarrowphase : public MeshNarrowphase {
-protected:
+public:
+    void intersect_meshes(const MeshPair& pair, TriangleHits& hits) const final;
+
     // For each pair: hit[i] = 1 if the closed triangles intersect; then, if `segments` is not empty, segments[i].
     // All spans have the same length (segments may be empty). Called by several threads at once.
     virtual void intersect_triangles(std::span<const TrianglePair> pairs, std::span<std::uint8_t> hit,
                                      std::span<TriangleSegment> segments) const = 0;
-
-private:
-    void intersect_meshes(const MeshPair& pair, TriangleHits& hits) const final;
 };
 
 }  // namespace kolize

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <kolize/contact.h>
-#include <kolize/world.h>
+#include <kolize/flow.h>
 
 namespace kolize {
 
@@ -10,6 +10,13 @@ struct NarrowphaseInput {
     const World& world;
     std::span<const Pair> pairs;     // body ids, a < b, sorted, no duplicates, never two static bodies
     std::span<const Detail> detail;  // what to find out about each pair; same length as pairs
+};
+
+struct ImpactInput {
+    const World& world;  // shapes and constants; the motion is the flow's
+    const Flow& flow;
+    std::span<const Pair> pairs;  // as in NarrowphaseInput
+    double from = 0, until = 0;   // s
 };
 
 // Contract (held by the conformance suite for every plugin):
@@ -31,6 +38,18 @@ public:
 
     // Appends to `contacts`, which comes empty and keeps its capacity between steps.
     virtual void find_contacts(const NarrowphaseInput& input, Contacts& contacts) = 0;
+
+    // For stepping `continuous`, if the descriptor's capabilities have time_of_impact; otherwise never called.
+    // times[i]: a moment at which pair i stands within twice touch_distance and approaches, such that the pair does not
+    // overlap between input.from and then; infinity if there is none until input.until. Never late: nothing is missed.
+    virtual void find_impacts(const ImpactInput& input, std::span<double> times);
+    // Contacts of pairs that stand within four times touch_distance without overlapping, at the world's present poses,
+    // depth 0. Appends rows in canonical order, each point a region of its own.
+    virtual void find_touching(const NarrowphaseInput& input, Contacts& contacts);
 };
+
+// The gap (m) at which two bodies in motion count as touching: far below any length of the scene, far above the
+// rounding of positions where the bodies are.
+KOLIZE_API double touch_distance(const World& world, std::uint32_t a, std::uint32_t b);
 
 }  // namespace kolize

@@ -16,7 +16,7 @@
 
 namespace kolize {
 
-inline constexpr std::uint32_t plugin_api = 1;  // raised when a stage contract changes
+inline constexpr std::uint32_t plugin_api = 2;  // raised when a stage contract changes
 
 constexpr std::uint64_t layout_hash();
 
@@ -40,6 +40,7 @@ struct AbiTag {
 struct Capabilities {
     std::uint32_t shape_kinds = all_shape_kinds;  // narrowphase: bits of ShapeKind that it takes, in any combination
     Detail gives = Detail::manifold;              // narrowphase: the most it can give, whatever its parameters
+    bool time_of_impact = false;                  // narrowphase: finds when moving bodies meet (stepping `continuous`)
     Detail needs = Detail::overlap;               // response: refused with a narrowphase that gives less
     Detail uses = Detail::overlap;                // response: more than this is not computed for it (>= needs)
     bool allocates = false;         // narrowphase: calls allocate even when warm, because a library it uses does

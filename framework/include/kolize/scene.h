@@ -6,6 +6,7 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,11 +30,22 @@ struct ResponseRule {
 
 struct StepConfig {
     double dt = 1.0 / 240;          // s
-    std::string mode = "discrete";  // discrete | rollback | bisection
+    std::string mode = "discrete";  // discrete | rollback | bisection | continuous
     std::string integrator = "pdmv4";
     double tolerance = 1e-3;  // bisection: the impact time is found to this share of dt
-    int max_impacts = 64;     // bisection: impacts resolved in one step before the rest is taken discretely
-    double time = 10;         // s; how long `kolize run` goes on when not told
+    int max_impacts = 64;  // bisection, continuous: impacts of one pair in one step; then a bisection leaves the pair
+                           // alone until the step ends, and continuous stepping holds its bodies where they are
+    double time = 10;      // s; how long `kolize run` goes on when not told
+    SourceLocation where = {};  // of the mode
+};
+
+// [ledger]: what each stage may at most get wrong, see docs/ledger.md.
+struct LedgerConfig {
+    bool check = false;
+    double energy = 1e-12;            // share of the energies at hand
+    double momentum = 1e-12;          // share of the momenta at hand
+    double angular_momentum = 1e-12;  // likewise
+    double penetration = infinity;    // m
 };
 
 struct PipelineConfig {
@@ -42,6 +54,7 @@ struct PipelineConfig {
     std::string walls = "auto";  // narrowphase.walls: auto | half_space | box | mesh
     std::vector<ResponseRule> responses;
     StepConfig step;
+    LedgerConfig ledger;
 };
 
 struct Scene {
@@ -49,6 +62,7 @@ struct Scene {
     World world;       // bodies of [[body]]; rooms become bodies when a simulation is made
     std::vector<Room> rooms;
     PipelineConfig pipeline;
+    std::optional<std::uint64_t> capsule_step;  // of a capsule: the step that comes next; walls are bodies already
     std::vector<std::string> warnings;  // what the files ask for and is not modelled or not read, a sentence each
 };
 

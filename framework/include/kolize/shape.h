@@ -35,6 +35,11 @@ KOLIZE_API Shape make_half_space(std::string name, const Vec3& normal, double of
 // The soup must be closed (see inspect): throws std::invalid_argument with the defect otherwise.
 KOLIZE_API Shape make_mesh(std::string name, const TriangleSoup& closed_surface);
 
+// Any triangles: a surface without thickness that is solid from both sides. It has no mass, so only static bodies can
+// have it, and no inside, so only stepping `continuous`, in which nothing overlaps, can deal with it. The body frame is
+// the model's, moved to the middle of the bounds. Throws std::invalid_argument if there is no triangle.
+KOLIZE_API Shape make_surface(std::string name, const TriangleSoup& triangles);
+
 struct Material {
     std::string name = "default";
     double restitution = 1.0;  // 0..1; of two bodies the larger one counts

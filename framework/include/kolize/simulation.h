@@ -6,6 +6,7 @@
 #include <kolize/scene.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,22 @@ struct EffectiveStage {
     std::vector<std::pair<std::string, Value>> settings;
 };
 
+// What a stage did that it may not do: the first entry of the ledger that does not balance.
+struct LedgerBreak {
+    std::uint64_t step = 0;
+    double time = 0;     // simulated, s, at which the step began
+    std::string stage;   // "integrator", "broadphase", "narrowphase", "response", "stepping"
+    std::string plugin;  // or the integrator's or the stepping's name
+    std::vector<std::uint32_t> bodies;  // a body, or the pair
+    std::string quantity;               // "energy", "momentum", "position", ...
+    std::string unit;
+    double value = 0;  // by how much it is off
+    double limit = 0;
+};
+
+// One sentence with all of it.
+KOLIZE_API std::string to_string(const LedgerBreak& broken, const World& world);
+
 class KOLIZE_API Simulation {
 public:
     // Makes the stages and negotiates: throws Error, before any step, in a sentence that names a plugin that would do,
@@ -53,6 +70,15 @@ public:
 
     // Advances by one dt. A failing stage throws std::runtime_error that names stage, plugin, step and the pair.
     void step();
+
+    // The ledger's first complaint so far; none where [ledger] is off. The run goes on after it.
+    const std::optional<LedgerBreak>& first_break() const;
+    // From now on the state at the beginning of each step is kept for capture_failure(). A ledger does so by itself.
+    void keep_steps();
+    // The scene as it stands, for capsule_text: a simulation made from it goes on to the same bits.
+    Scene capture() const;
+    // The same for the beginning of the step with the first break, or else of the last step, failed or not.
+    Scene capture_failure() const;
 
     const World& world() const;
     const std::vector<Pair>& pairs() const;    // of the last step, canonical order, body ids

@@ -30,6 +30,14 @@ struct BodyDescription {
     Vec3 constant_torque = Vec3::Zero();   // world axes, N m
 };
 
+// What moves of one body. Frames as in World.
+struct BodyState {
+    Vec3 position = Vec3::Zero();          // m
+    Quat orientation = Quat::Identity();   // body frame to world
+    Vec3 velocity = Vec3::Zero();          // m/s
+    Vec3 angular_velocity = Vec3::Zero();  // world axes, rad/s
+};
+
 // Frames: a body's own frame has its origin at the centre of mass and its axes along the principal axes of inertia, so
 // the inertia tensor is diagonal there and the world tensor is always derived from the orientation, never accumulated.
 struct KOLIZE_API World {
@@ -62,6 +70,15 @@ struct KOLIZE_API World {
     std::uint32_t add(const BodyDescription& body);
 
     const Shape& shape_of(std::uint32_t body) const { return shapes[shape[body]]; }
+    BodyState state(std::uint32_t body) const {
+        return {position[body], orientation[body], velocity[body], angular_velocity[body]};
+    }
+    void set_state(std::uint32_t body, const BodyState& state) {
+        position[body] = state.position;
+        orientation[body] = state.orientation;
+        velocity[body] = state.velocity;
+        angular_velocity[body] = state.angular_velocity;
+    }
     Transform pose(std::uint32_t body) const { return {orientation[body].toRotationMatrix(), position[body]}; }
     // Placement of the body's model frame: what scene files and printed results speak of.
     Vec3 model_position(std::uint32_t body) const;
@@ -71,6 +88,9 @@ struct KOLIZE_API World {
     Mat3 world_inverse_inertia(std::uint32_t body) const;
     Vec3 angular_momentum(std::uint32_t body) const;  // about the body's centre of mass, kg m^2/s; 0 if static
     double kinetic_energy(std::uint32_t body) const;  // J; 0 if static
+    // The same for a state that the body has at another time.
+    Vec3 angular_momentum(std::uint32_t body, const BodyState& state) const;
+    double kinetic_energy(std::uint32_t body, const BodyState& state) const;
 
     Vec3 velocity_at(std::uint32_t body, const Vec3& arm) const {
         return velocity[body] + angular_velocity[body].cross(arm);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <random>
 #include <sstream>
+#include <tuple>
 
 namespace kolize {
 
@@ -50,6 +51,18 @@ Contact random_contact(Dice& dice, const World& world, std::uint32_t a, std::uin
     return contact;
 }
 
+// The contact and its hit bits between bodies with new numbers.
+std::pair<Contact, std::uint8_t> renumbered(Contact contact, std::uint8_t hit,
+                                            const std::vector<std::uint32_t>& number) {
+    contact.a = number[contact.a];
+    contact.b = number[contact.b];
+    if (contact.a < contact.b) return {contact, hit};
+    std::swap(contact.a, contact.b);
+    std::swap(contact.arm_a, contact.arm_b);
+    contact.normal = -contact.normal;
+    return {contact, static_cast<std::uint8_t>((hit & 1) << 1 | hit >> 1)};
+}
+
 }  // namespace
 
 ImpactScene random_impacts(std::size_t count, Detail detail, double restitution, std::uint64_t seed) {
@@ -85,6 +98,29 @@ ImpactScene moved(const ImpactScene& scene, const Quat& turn, const Vec3& shift)
         contact.arm_a = turn * contact.arm_a;
         contact.arm_b = turn * contact.arm_b;
     }
+    return result;
+}
+
+ImpactScene renumbered(const ImpactScene& scene, const std::vector<std::uint32_t>& number) {
+    ImpactScene result = scene;
+    World& world = result.world;
+    for (std::uint32_t i = 0; i < number.size(); ++i) {
+        const std::uint32_t j = number[i];
+        world.set_state(j, scene.world.state(i));
+        world.inverse_mass[j] = scene.world.inverse_mass[i];
+        world.inverse_inertia[j] = scene.world.inverse_inertia[i];
+        world.shape[j] = scene.world.shape[i];
+        world.material[j] = scene.world.material[i];
+        world.kind[j] = scene.world.kind[i];
+        world.is_static[j] = scene.world.is_static[i];
+    }
+    std::vector<std::pair<Contact, std::uint8_t>> rows;
+    for (std::size_t i = 0; i < scene.contacts.size(); ++i)
+        rows.push_back(renumbered(scene.contacts[i], scene.hit[i], number));
+    std::stable_sort(rows.begin(), rows.end(), [](const auto& r, const auto& s) {
+        return Pair{r.first.a, r.first.b} < Pair{s.first.a, s.first.b};
+    });
+    for (std::size_t i = 0; i < rows.size(); ++i) std::tie(result.contacts[i], result.hit[i]) = rows[i];
     return result;
 }
 

@@ -21,6 +21,10 @@ ImpactScene random_impacts(std::size_t count, Detail detail, double restitution,
 // The same scene turned and moved as a whole.
 ImpactScene moved(const ImpactScene& scene, const Quat& turn, const Vec3& shift);
 
+// The same scene with body i as body number[i]; contacts in canonical order again, A and B swapped where they have to
+// be.
+ImpactScene renumbered(const ImpactScene& scene, const std::vector<std::uint32_t>& number);
+
 // The bodies and contacts as text that tells one case from another and can be rebuilt from.
 std::string to_text(const ImpactScene& scene);
 

@@ -1,3 +1,4 @@
+#include "impact_times.h"
 #include "suite.h"
 #include "two_solids.h"
 
@@ -281,6 +282,7 @@ std::vector<Check> check_narrowphase(const PluginLibrary& library, const LoadedP
     suite.run("pairs do not influence each other", [&] { checks.pairs_do_not_influence_each_other(); });
     suite.run("poses that are not finite are refused", [&] { checks.refuses_what_is_not_finite(); });
     suite.run("warm calls allocate nothing", [&] { checks.warm_calls_allocate_nothing(); });
+    check_impact_times(library, plugin, options, suite);
     return suite.take();
 }
 

@@ -1,59 +1,42 @@
 // Contact models: from the intersecting triangles of two meshes to contact regions, in the body frame of mesh A.
 #pragma once
 
+#include "contact_model/crossing_triangles.h"
+#include "contact_model/marks.h"
 #include "contact_region.h"
-
-#include <kolize/mesh_narrowphase.h>
 
 namespace kolize {
 
-// Set of small integers that is emptied in constant time.
-class Marks {
-public:
-    void reserve(std::size_t size) { stamps_.reserve(size); }
-    void reset(std::size_t size) {
-        if (stamps_.size() < size) stamps_.resize(size, 0);
-        if (++now_ == 0) {
-            std::fill(stamps_.begin(), stamps_.end(), 0u);
-            now_ = 1;
-        }
-    }
-    void set(std::uint32_t i) { stamps_[i] = now_; }
-    bool test(std::uint32_t i) const { return stamps_[i] == now_; }
-
-private:
-    std::vector<std::uint32_t> stamps_;
-    std::uint32_t now_ = 0;
-};
-
-// Where an edge of one mesh goes through a triangle of the other. The ids alone say which crossing it is, so the two
-// triangle pairs that share it agree without comparing coordinates.
-struct Crossing {
-    std::uint64_t key = 0;  // (whose edge, edge, triangle)
-    Vec3 point = Vec3::Zero();
-    bool edge_of_a = false;
-    std::uint32_t edge = 0;
-    std::uint32_t inner_vertex = 0;  // the end of the edge that lies behind the triangle
-};
-
-struct ContourSegment {
-    Crossing from, to;  // oriented along normal_A x normal_B
-    std::uint32_t triangle_a = 0, triangle_b = 0;
-    std::uint32_t parent = 0;  // union-find; afterwards the first segment of the region
-};
-
-// The part of one mesh that lies inside the other behind one region of the curve.
+// The part of one mesh that lies inside the other behind one region.
 struct InnerPatch {
     std::vector<std::uint32_t> triangles;  // the region's own first, then those wholly inside
     std::vector<std::uint32_t> vertices;   // inside
     std::vector<std::uint32_t> edges;      // of those triangles
 };
 
+// A triangle of either patch in the view along a region's normal, which is the third axis.
+struct ViewedTriangle {
+    Vec3 corners[3];
+    bool of_a = false;
+    bool leaves = false;  // its outside is up: a way up through it leaves the body
+};
+
+// Where a region lies, and the area of A's surface inside B.
+struct RegionArea {
+    Vec3 center = Vec3::Zero();
+    Vec3 area = Vec3::Zero();
+};
+
 struct ContourScratch {
     std::vector<ContourSegment> segments;
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> ends;  // (crossing key, segment)
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> ends;  // (crossing key, segment), sorted
+    std::vector<std::uint32_t> along_edge;                      // of `ends`: the crossings of one edge, in their order
+    std::vector<std::uint32_t> inside_of;                       // per vertex that is marked: a segment of its region
     std::vector<Vec3> points;
+    std::vector<std::uint32_t> curve;    // the segments that `points` stand on
+    std::vector<RegionArea> other_side;  // the regions after the nudge to the other side
     InnerPatch patch_a, patch_b;
+    std::vector<ViewedTriangle> view;
     Marks vertices, triangles, edges;
     Marks pierced_a, pierced_b;    // edges that go through a triangle of the other mesh
     Marks repeated_a, repeated_b;  // of them, those that go through more than one
@@ -62,19 +45,22 @@ struct ContourScratch {
     void reserve(std::size_t vertices, std::size_t edges, std::size_t triangles);
 };
 
-// One region per connected part of the intersection curve. For closed meshes in general position (no crossing point
-// exactly on an edge or vertex of the other mesh).
+// One region for each connected part of the overlap of two closed meshes. They may touch, share corners, edges or
+// faces, or be the same: ties are decided as if A were moved by an infinitesimal step (see Nudge), so touching surfaces
+// overlap if that step, towards B, makes them do so.
+//
 // Normal: direction of the vector area sum 1/2 p x q of the oriented curve, which is the outward area of A's surface
 // inside B and the gradient of the overlap volume under translation (divergence theorem; Faure, Allard et al.
-// 2008-2010). Depth: see overlap_depth.
+// 2008-2010). Where a thin part is pierced right through, that gradient vanishes or means little: the loops of the
+// region are then turned to agree with the line of centres, which leads out on the side the body came from.
+// Where faces of both bodies lie in one plane along the line of centres, the volume has no gradient but one on either
+// side; then the mean of the two is taken.
+// Depth and points: see overlap_depth.h.
 void contour_regions(const MeshPair& pair, std::span<const TriangleHit> hits, ContourScratch& scratch,
                      std::vector<ContactRegion>& regions);
 
-// The longest chord of the overlap along the normal, between the inner patches of both surfaces. Its ends lie at a
-// vertex of one patch over a triangle of the other, or where two edges cross in the view along the normal. Exact where
-// each surface bounds the overlap from one side, an estimate in deep or pierced overlaps; of large patches only the
-// vertices that reach farthest are tried.
-double overlap_depth(const MeshPair& pair, std::uint32_t region, const Vec3& normal, ContourScratch& scratch);
+// Whether contour_regions would find any.
+bool surfaces_cross(const MeshPair& pair, std::span<const TriangleHit> hits);
 
 // The baseline of the source thesis: one contact whatever the number of places. Point: mean of the intersection points
 // that two triangle pairs found bitwise alike (of all points, if none was). Normal: mean of the triangle normals of the

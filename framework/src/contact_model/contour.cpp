@@ -1,192 +1,181 @@
-#include "contact_model/contact_model.h"
-
-#include <algorithm>
+#include "contact_model/curve.h"
+#include "contact_model/overlap_depth.h"
 
 namespace kolize {
 
 namespace {
 
-// Everything that decides how two triangles cross is the sign of a determinant of an edge and an edge, or a vertex and
-// a triangle, always computed from the same operands in the same order. Neighbouring triangle pairs therefore see the
-// same signs, and a closed mesh leaves closed curves. One rule for zero everywhere: > 0 against <= 0.
-class CrossingTriangles {
+constexpr double flat = 1e-12;     // rad: normals that differ by less are those of one plane
+constexpr double parallel = 1e-6;  // rad: directions that differ by less have no cross product to rely on
+constexpr double pierced = 0.1;    // of the loops' areas; a region whose areas cancel to less is pierced right through
+
+// Of one region. The curve is oriented, so the area of each closed loop of it is a vector.
+class Curve {
 public:
-    CrossingTriangles(const MeshPair& pair, std::uint32_t triangle_a, std::uint32_t triangle_b)
-        : pair_(pair), triangle_a_(triangle_a), triangle_b_(triangle_b) {
-        for (int k = 0; k < 3; ++k) {
-            a_[k] = pair.a.vertices[pair.a.triangles[triangle_a][k]];
-            b_[k] = pair.b_to_a * pair.b.vertices[pair.b.triangles[triangle_b][k]];
-        }
-        for (int k = 0; k < 3; ++k) {
-            height_a_[k] = height(a_[k], b_);
-            height_b_[k] = height(b_[k], a_);
-            edge_a_[k] = edge_of(pair.a, triangle_a, k);
-            edge_b_[k] = edge_of(pair.b, triangle_b, k);
-        }
+    Curve(const MeshPair& pair, std::span<const ContourSegment> segments, std::uint32_t region)
+        : pair_(pair), segments_(segments), region_(region) {
+        Vec3 mean = Vec3::Zero();
+        double count = 0;
+        for_each([&](const ContourSegment& s) {
+            const double length = (s.to.point - s.from.point).norm();
+            length_ += length;
+            center_ += 0.5 * length * (s.from.point + s.to.point);
+            mean += s.from.point;
+            ++count;
+            across_ += normal_a(s) - normal_b(s);
+        });
+        center_ = length_ > 0 ? Vec3(center_ / length_) : Vec3(mean / count);
     }
 
-    // The ends of the common segment; false unless there are exactly two.
-    bool find(ContourSegment& segment) const {
-        Crossing found[6];
-        int count = 0;
-        for (int k = 0; k < 3; ++k) {
-            if (edge_goes_through(k, true)) found[count++] = crossing(k, true);
-            if (edge_goes_through(k, false)) found[count++] = crossing(k, false);
+    const Vec3& center() const { return center_; }  // weighted by length
+
+    // From A to B. Small curves give their area to few digits, but the direction is often known better: all of a curve
+    // in one plane has that plane's normal, and one around two crossing edges has both edges at right angles.
+    Vec3 normal(const Vec3& area) const {
+        if (const Vec3 n = common_normal(true) - common_normal(false); n.norm() > parallel)
+            return turned_along(area, n.normalized());
+        if (const Vec3 n = edges_normal(); !n.isZero()) return turned_along(area, across_.dot(n) < 0 ? Vec3(-n) : n);
+        if (is_area(area)) return area.normalized();
+        if (across_.norm() > flat) return across_.normalized();
+        const Vec3& centers = pair_.b_to_a.translation;
+        return centers.norm() > 0 ? Vec3(centers.normalized()) : Vec3::UnitX();
+    }
+
+    Vec3 area_vector() const {
+        Vec3 sum = Vec3::Zero(), sum_along_centers = Vec3::Zero();
+        double sum_of_norms = 0;
+        for (std::uint32_t i = 0; i < segments_.size(); ++i) {
+            if (segments_[i].region != region_ || segments_[i].loop != i) continue;
+            const Vec3 area = area_of_loop(i);
+            sum += area;
+            sum_along_centers += area.dot(pair_.b_to_a.translation) < 0 ? Vec3(-area) : area;
+            sum_of_norms += area.norm();
         }
-        if (count != 2) return false;
-        const Vec3 direction = normal(a_).cross(normal(b_));
-        const bool forward = direction.dot(found[1].point - found[0].point) >= 0;
-        segment.from = found[forward ? 0 : 1];
-        segment.to = found[forward ? 1 : 0];
-        segment.triangle_a = triangle_a_;
-        segment.triangle_b = triangle_b_;
-        return true;
+        return sum.norm() < pierced * sum_of_norms ? sum_along_centers : sum;
     }
 
 private:
-    struct OrderedEdge {
-        std::uint32_t id = 0;
-        int low = 0, high = 0;  // corners of the triangle, lower vertex id first
-        bool flipped = false;   // the triangle runs from high to low
-    };
+    template <class Visit>
+    void for_each(const Visit& visit) const {
+        for (const ContourSegment& s : segments_)
+            if (s.region == region_) visit(s);
+    }
+    const Vec3& normal_a(const ContourSegment& s) const { return pair_.a.normals[s.triangle_a]; }
+    Vec3 normal_b(const ContourSegment& s) const { return pair_.b_to_a.rotation * pair_.b.normals[s.triangle_b]; }
 
-    static Vec3 normal(const Vec3 (&t)[3]) { return (t[1] - t[0]).cross(t[2] - t[0]); }
-    static double height(const Vec3& p, const Vec3 (&t)[3]) { return normal(t).dot(p - t[0]); }
+    // Whether it is more than rounding.
+    bool is_area(const Vec3& area) const { return area.norm() > 1e-12 * length_ * length_; }
 
-    static OrderedEdge edge_of(const Mesh& mesh, std::uint32_t triangle, int k) {
-        const Triangle& t = mesh.triangles[triangle];
-        const int next = (k + 1) % 3;
-        const bool flipped = t[k] > t[next];
-        return {mesh.triangle_edges[triangle][k], flipped ? next : k, flipped ? k : next, flipped};
+    // The given unit vector or its opposite, whichever agrees with the area; as given, if the area cannot tell.
+    Vec3 turned_along(const Vec3& area, const Vec3& n) const { return is_area(area) && area.dot(n) < 0 ? Vec3(-n) : n; }
+
+    Vec3 area_of_loop(std::uint32_t loop) const {
+        Vec3 area = Vec3::Zero();
+        for_each([&](const ContourSegment& s) {
+            if (s.loop == loop) area += 0.5 * (s.from.point - center_).cross(s.to.point - center_);
+        });
+        return area;
     }
 
-    bool passes_left(const OrderedEdge& ea, const OrderedEdge& eb) const {
-        const Vec3 &p = a_[ea.low], &q = a_[ea.high], &r = b_[eb.low], &s = b_[eb.high];
-        return (q - p).dot((r - p).cross(s - p)) > 0;
+    // Of all triangles of one body along the curve; zero if they have none in common.
+    Vec3 common_normal(bool of_a) const {
+        Vec3 common = Vec3::Zero();
+        bool alike = true;
+        for_each([&](const ContourSegment& s) {
+            const Vec3 n = of_a ? normal_a(s) : normal_b(s);
+            if (common.isZero()) common = n;
+            alike = alike && (n - common).norm() < flat;
+        });
+        return alike ? common : Vec3::Zero();
     }
 
-    // An edge crosses a triangle when its ends lie on different sides of the plane and it passes all three sides alike.
-    bool edge_goes_through(int k, bool of_a) const {
-        const OrderedEdge& edge = of_a ? edge_a_[k] : edge_b_[k];
-        const double* heights = of_a ? height_a_ : height_b_;
-        if ((heights[edge.low] > 0) == (heights[edge.high] > 0)) return false;
-        bool left[3];
-        for (int j = 0; j < 3; ++j) {
-            const OrderedEdge& side = of_a ? edge_b_[j] : edge_a_[j];
-            left[j] = (of_a ? passes_left(edge, side) : passes_left(side, edge)) != side.flipped;
-        }
-        return left[0] == left[1] && left[1] == left[2];
-    }
-
-    Crossing crossing(int k, bool of_a) const {
-        const OrderedEdge& edge = of_a ? edge_a_[k] : edge_b_[k];
-        const Vec3* corners = of_a ? a_ : b_;
-        const double low = (of_a ? height_a_ : height_b_)[edge.low], high = (of_a ? height_a_ : height_b_)[edge.high];
-        Crossing c;
-        c.point = corners[edge.low] + (corners[edge.high] - corners[edge.low]) * (low / (low - high));
-        c.edge_of_a = of_a;
-        c.edge = edge.id;
-        const Triangle& t = of_a ? pair_.a.triangles[triangle_a_] : pair_.b.triangles[triangle_b_];
-        c.inner_vertex = t[low > 0 ? edge.high : edge.low];
-        const std::uint64_t triangle = of_a ? triangle_b_ : triangle_a_;
-        c.key = (std::uint64_t(of_a) << 63) | (std::uint64_t(edge.id) << 31) | triangle;
-        return c;
+    // Of one edge of each body, where these two make all four crossings; zero otherwise.
+    Vec3 edges_normal() const {
+        const Crossing *of_a = nullptr, *of_b = nullptr;
+        int count = 0;
+        bool two_edges = true;
+        for_each([&](const ContourSegment& s) {
+            const Crossing*& first = s.from.edge_of_a ? of_a : of_b;
+            if (!first) first = &s.from;
+            two_edges = two_edges && first->edge == s.from.edge;
+            ++count;
+        });
+        if (!two_edges || count != 4 || !of_a || !of_b) return Vec3::Zero();
+        const auto direction = [](const Mesh& mesh, const Crossing* c) -> Vec3 {
+            return (mesh.vertices[mesh.edges[c->edge].v1] - mesh.vertices[mesh.edges[c->edge].v0]).normalized();
+        };
+        const Vec3 normal = direction(pair_.a, of_a).cross(pair_.b_to_a.rotation * direction(pair_.b, of_b));
+        return normal.norm() > parallel ? Vec3(normal.normalized()) : Vec3::Zero();
     }
 
     const MeshPair& pair_;
-    std::uint32_t triangle_a_, triangle_b_;
-    Vec3 a_[3], b_[3];                  // corners, frame of A
-    double height_a_[3], height_b_[3];  // over the plane of the other triangle, scaled by twice its area
-    OrderedEdge edge_a_[3], edge_b_[3];
+    std::span<const ContourSegment> segments_;
+    std::uint32_t region_;
+    double length_ = 0;
+    Vec3 center_ = Vec3::Zero();
+    Vec3 across_ = Vec3::Zero();  // sum of the surfaces' normals along the curve, B's turned round
 };
 
-std::uint32_t root(std::vector<ContourSegment>& segments, std::uint32_t i) {
-    while (segments[i].parent != i) i = segments[i].parent = segments[segments[i].parent].parent;
-    return i;
-}
+constexpr double least_depth = std::numeric_limits<double>::min();  // m: a touch is a contact, and has a depth
 
-// Segments that share a crossing belong together; every region is named by its first segment.
-void join_regions(ContourScratch& scratch) {
-    auto& segments = scratch.segments;
-    scratch.ends.clear();
-    for (std::uint32_t i = 0; i < segments.size(); ++i) {
-        segments[i].parent = i;
-        scratch.ends.emplace_back(segments[i].from.key, i);
-        scratch.ends.emplace_back(segments[i].to.key, i);
-    }
-    std::sort(scratch.ends.begin(), scratch.ends.end());
-    for (std::size_t i = 1; i < scratch.ends.size(); ++i)
-        if (scratch.ends[i].first == scratch.ends[i - 1].first) {
-            const auto [low, high] =
-                std::minmax({root(segments, scratch.ends[i].second), root(segments, scratch.ends[i - 1].second)});
-            segments[high].parent = low;
-        }
-    for (std::uint32_t i = 0; i < segments.size(); ++i) segments[i].parent = root(segments, i);
-}
-
-// Needs scratch.ends sorted: crossings of one edge stand side by side.
-void mark_edges(const MeshPair& pair, ContourScratch& scratch) {
-    scratch.pierced_a.reset(pair.a.edges.size());
-    scratch.pierced_b.reset(pair.b.edges.size());
-    scratch.repeated_a.reset(pair.a.edges.size());
-    scratch.repeated_b.reset(pair.b.edges.size());
-    std::uint64_t last = ~std::uint64_t(0);  // no crossing has this key
-    for (const auto& [key, segment] : scratch.ends) {
-        if (key == last) continue;
-        last = key;
-        const bool of_a = key >> 63;
-        const auto edge = static_cast<std::uint32_t>(key >> 31);
-        Marks& pierced = of_a ? scratch.pierced_a : scratch.pierced_b;
-        if (pierced.test(edge)) (of_a ? scratch.repeated_a : scratch.repeated_b).set(edge);
-        pierced.set(edge);
-    }
-}
-
-struct Curve {
-    Vec3 center = Vec3::Zero();  // of the curve, weighted by length
-    Vec3 normal = Vec3::Zero();
-};
-
-// False if the curve gives no direction at all.
-bool measure_curve(const MeshPair& pair, std::span<const ContourSegment> segments, std::uint32_t region, Curve& curve) {
-    double length = 0;
-    Vec3 rim = Vec3::Zero(), mean = Vec3::Zero();
-    std::size_t count = 0;
-    for (const ContourSegment& s : segments) {
-        if (s.parent != region) continue;
-        const double l = (s.to.point - s.from.point).norm();
-        length += l;
-        curve.center += 0.5 * l * (s.from.point + s.to.point);
-        mean += s.from.point;
-        ++count;
-        rim += l * (pair.a.normals[s.triangle_a] - pair.b_to_a.rotation * pair.b.normals[s.triangle_b]);
-    }
-    curve.center = length > 0 ? Vec3(curve.center / length) : Vec3(mean / static_cast<double>(count));
-    Vec3 area = Vec3::Zero();
-    for (const ContourSegment& s : segments)
-        if (s.parent == region) area += 0.5 * (s.from.point - curve.center).cross(s.to.point - curve.center);
-    // A curve that runs back on itself encloses nothing; the surfaces along it still tell the direction.
-    const Vec3& direction = area.norm() > 1e-12 * length * length ? area : rim;
-    const double norm = direction.norm();
-    if (!(norm > 0)) return false;
-    curve.normal = direction / norm;
-    return true;
-}
-
-ContactRegion make_region(const MeshPair& pair, std::uint32_t region, const Curve& curve, ContourScratch& scratch) {
-    ContactRegion result;
-    result.normal = curve.normal;
-    result.center = curve.center;
-    result.depth = overlap_depth(pair, region, curve.normal, scratch);
+// Up to four points of the curve, each with its own depth. The deepest place of all is always among the points: if none
+// is as deep, the one nearest to it gives way.
+void add_points(const OverlapDepth& depth, const OverlapDepth::Chord& longest, ContourScratch& scratch,
+                std::uint32_t id, ContactRegion& region) {
     scratch.points.clear();
-    for (const ContourSegment& s : scratch.segments)
-        if (s.parent == region) scratch.points.push_back(s.from.point);
+    scratch.curve.clear();
+    for (std::uint32_t i = 0; i < scratch.segments.size(); ++i)
+        if (scratch.segments[i].region == id) {
+            scratch.points.push_back(scratch.segments[i].from.point);
+            scratch.curve.push_back(i);
+        }
     std::array<std::uint32_t, 4> chosen;
     for (const std::uint32_t i : spread_points(scratch.points, chosen)) {
-        result.depths[result.count] = result.depth;
-        result.points[result.count++] = scratch.points[i];
+        const Crossing& crossing = scratch.segments[scratch.curve[i]].from;
+        region.depths[region.count] = std::max(depth.at(crossing), least_depth);
+        region.points[region.count++] = crossing.point;
     }
-    return result;
+    const auto depths = std::span(region.depths).first(static_cast<std::size_t>(region.count));
+    if (*std::max_element(depths.begin(), depths.end()) >= (1 - 1e-9) * longest.length) return;
+    const auto points = std::span(region.points).first(depths.size());
+    const auto nearest = std::min_element(points.begin(), points.end(), [&](const Vec3& p, const Vec3& q) {
+        return (p - longest.middle).squaredNorm() < (q - longest.middle).squaredNorm();
+    });
+    const auto place = region.count < 4 ? region.count++ : nearest - points.begin();
+    region.points[place] = longest.middle;
+    region.depths[place] = longest.length;
+}
+
+// Of the region that lies nearest.
+Vec3 area_on_other_side(const Vec3& center, const ContourScratch& scratch) {
+    const auto nearest = std::min_element(
+        scratch.other_side.begin(), scratch.other_side.end(), [&](const RegionArea& x, const RegionArea& y) {
+            return (x.center - center).squaredNorm() < (y.center - center).squaredNorm();
+        });
+    return nearest == scratch.other_side.end() ? Vec3(Vec3::Zero()) : nearest->area;
+}
+
+ContactRegion make_region(const MeshPair& pair, std::uint32_t id, ContourScratch& scratch) {
+    const Curve curve(pair, scratch.segments, id);
+    ContactRegion region;
+    region.normal = curve.normal(curve.area_vector() + area_on_other_side(curve.center(), scratch));
+    region.center = curve.center();
+    OverlapDepth depth(pair, id, region.normal, scratch);
+    const OverlapDepth::Chord longest = depth.longest();
+    region.depth = std::max(longest.length, least_depth);
+    add_points(depth, longest, scratch, id, region);
+    return region;
+}
+
+void find_curve(const MeshPair& pair, std::span<const TriangleHit> hits, Nudge& nudge, ContourScratch& scratch) {
+    find_segments(pair, hits, nudge, scratch);
+    join_segments(pair, scratch);
+}
+
+template <class Visit>
+void for_each_region(const ContourScratch& scratch, const Visit& visit) {
+    for (std::uint32_t i = 0; i < scratch.segments.size(); ++i)
+        if (scratch.segments[i].region == i) visit(i);
 }
 
 }  // namespace
@@ -196,7 +185,12 @@ void ContourScratch::reserve(std::size_t most_vertices, std::size_t most_edges, 
         512;  // triangle pairs of one mesh pair; more is possible, it only costs an allocation
     segments.reserve(usual);
     ends.reserve(2 * usual);
+    along_edge.reserve(usual);
     points.reserve(2 * usual);
+    curve.reserve(usual);
+    other_side.reserve(usual);
+    inside_of.reserve(most_vertices);
+    view.reserve(2 * most_triangles);
     vertices.reserve(most_vertices);
     triangles.reserve(most_triangles);
     for (Marks* marks : {&edges, &pierced_a, &pierced_b, &repeated_a, &repeated_b}) marks->reserve(most_edges);
@@ -209,18 +203,19 @@ void ContourScratch::reserve(std::size_t most_vertices, std::size_t most_edges, 
 
 void contour_regions(const MeshPair& pair, std::span<const TriangleHit> hits, ContourScratch& scratch,
                      std::vector<ContactRegion>& regions) {
-    scratch.segments.clear();
-    for (const TriangleHit& hit : hits) {
-        ContourSegment segment;
-        if (CrossingTriangles(pair, hit.a, hit.b).find(segment)) scratch.segments.push_back(segment);
+    Nudge nudge(pair.b_to_a.translation);
+    find_curve(pair, hits, nudge, scratch);
+    scratch.other_side.clear();
+    if (nudge.went_sideways()) {
+        Nudge other = nudge.to_other_side();
+        find_curve(pair, hits, other, scratch);
+        for_each_region(scratch, [&](std::uint32_t id) {
+            const Curve curve(pair, scratch.segments, id);
+            scratch.other_side.push_back({curve.center(), curve.area_vector()});
+        });
+        find_curve(pair, hits, nudge, scratch);
     }
-    join_regions(scratch);
-    mark_edges(pair, scratch);
-    for (std::uint32_t i = 0; i < scratch.segments.size(); ++i) {
-        Curve curve;
-        if (scratch.segments[i].parent == i && measure_curve(pair, scratch.segments, i, curve))
-            regions.push_back(make_region(pair, i, curve, scratch));
-    }
+    for_each_region(scratch, [&](std::uint32_t id) { regions.push_back(make_region(pair, id, scratch)); });
 }
 
 }  // namespace kolize

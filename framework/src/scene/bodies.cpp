@@ -73,17 +73,6 @@ void read_table(TableReader& reader, const BodyDescription& constants, World& wo
         add_body(world, with_state(constants, rows[i], i), reader.where("from"));
 }
 
-std::array<bool, 6> read_open_sides(TableReader& reader) {
-    std::array<bool, 6> open{};
-    for (const std::string& side : reader.texts("open")) {
-        const auto found = std::find(sides.begin(), sides.end(), side);
-        if (found == sides.end())
-            throw Error(reader.where("open"), "there is no side '" + side + "'; there are " + join(sides));
-        open[static_cast<std::size_t>(found - sides.begin())] = true;
-    }
-    return open;
-}
-
 Room read_room(TableReader& reader, const NameTable& materials) {
     Room room;
     reader.require("min");
@@ -99,6 +88,17 @@ Room read_room(TableReader& reader, const NameTable& materials) {
 }
 
 }  // namespace
+
+std::array<bool, 6> read_open_sides(TableReader& reader) {
+    std::array<bool, 6> open{};
+    for (const std::string& side : reader.texts("open")) {
+        const auto found = std::find(sides.begin(), sides.end(), side);
+        if (found == sides.end())
+            throw Error(reader.where("open"), "there is no side '" + side + "'; there are " + join(sides));
+        open[static_cast<std::size_t>(found - sides.begin())] = true;
+    }
+    return open;
+}
 
 void read_bodies(const toml::table& config, const NameTable& shapes, const NameTable& materials, World& world) {
     NameTable names("body");

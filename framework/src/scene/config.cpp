@@ -10,7 +10,7 @@ namespace kolize::config {
 namespace {
 
 const std::string setting_prefix = "--set ";
-const std::vector<std::string> pipeline_tables = {"step", "broadphase", "narrowphase", "response", "render"};
+const std::vector<std::string> pipeline_tables = {"step", "broadphase", "narrowphase", "response", "ledger", "render"};
 
 SourceLocation location(const toml::source_region& source) {
     const std::string file = source.path ? *source.path : "";
@@ -168,10 +168,12 @@ void merge_pipeline(toml::table& scene, toml::table&& pipeline) {
         if (name == "schema") continue;
         if (std::find(pipeline_tables.begin(), pipeline_tables.end(), name) == pipeline_tables.end()) {
             const std::string near = nearest_name(name, pipeline_tables);
-            throw Error(location(key, node),
-                        "a pipeline file has no table '" + name + "'; " +
-                            (near.empty() ? "it may hold [step], [broadphase], [narrowphase], [[response]] and [render]"
-                                          : "did you mean '" + near + "'?"));
+            throw Error(
+                location(key, node),
+                "a pipeline file has no table '" + name + "'; " +
+                    (near.empty()
+                         ? "it may hold [step], [broadphase], [narrowphase], [[response]], [ledger] and [render]"
+                         : "did you mean '" + near + "'?"));
         }
         move_into(scene, key, node);
     }

@@ -7,8 +7,9 @@ namespace {
 
 using namespace config;
 
-const std::vector<std::string> scene_tables = {"schema", "world",      "step",        "material", "shape", "body",
-                                               "room",   "broadphase", "narrowphase", "response", "render"};
+const std::vector<std::string> scene_tables = {"schema", "world",  "step",       "material",    "shape",
+                                               "body",   "room",   "broadphase", "narrowphase", "response",
+                                               "ledger", "render", "capsule"};
 
 void require_known_tables(const toml::table& config) {
     for (const auto& [key, node] : config) {
@@ -32,6 +33,14 @@ Forces read_forces(const toml::table& config) {
     forces.drag = reader.number("drag", forces.drag, non_negative);
     reader.finish();
     return forces;
+}
+
+void read_world(const toml::table& config, Scene& scene) {
+    scene.world.forces = read_forces(config);
+    const NameTable materials = read_materials(config, scene.world);
+    const NameTable shapes = read_shapes(config, scene.world, scene.warnings);
+    read_bodies(config, shapes, materials, scene.world);
+    scene.rooms = read_rooms(config, materials);
 }
 
 toml::table merged_config(const std::filesystem::path& file, const SceneOptions& options,
@@ -71,11 +80,7 @@ Scene load_scene(const std::filesystem::path& file, const SceneOptions& options,
     Scene scene;
     scene.file = file.string();
     scene.pipeline = read_pipeline(config, options.defaults);
-    scene.world.forces = read_forces(config);
-    const NameTable materials = read_materials(config, scene.world);
-    const NameTable shapes = read_shapes(config, scene.world, scene.warnings);
-    read_bodies(config, shapes, materials, scene.world);
-    scene.rooms = read_rooms(config, materials);
+    config.contains("capsule") ? read_capsule(config, scene) : read_world(config, scene);
     for (std::string& warning : frictionless_materials(scene, plugins)) scene.warnings.push_back(std::move(warning));
     return scene;
 }

@@ -37,5 +37,9 @@ NameTable read_shapes(const toml::table& config, World& world, std::vector<std::
 // [[body]], with the rows of `from` tables.
 void read_bodies(const toml::table& config, const NameTable& shapes, const NameTable& materials, World& world);
 std::vector<Room> read_rooms(const toml::table& config, const NameTable& materials);
+std::array<bool, 6> read_open_sides(TableReader& reader);
+
+// [capsule], which stands in the place of all of these: world, rooms and the number of the step.
+void read_capsule(const toml::table& config, Scene& scene);
 
 }  // namespace kolize::config

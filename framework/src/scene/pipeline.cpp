@@ -18,17 +18,30 @@ Value scalar(const std::string& key, const toml::node& node) {
 }
 
 StepConfig read_step(const toml::table& config) {
-    static const std::vector<std::string> modes = {"discrete", "rollback", "bisection"};
+    static const std::vector<std::string> modes = {"discrete", "rollback", "bisection", "continuous"};
     TableReader reader(table(config, "step"), "[step]");
     StepConfig step;
     step.dt = reader.number("dt", step.dt, positive);
     step.mode = reader.choice("mode", step.mode, modes);
+    step.where = reader.where("mode");
     step.integrator = reader.choice("integrator", step.integrator, integrator_names());
     step.tolerance = reader.number("tolerance", step.tolerance, {0, 1, true});
     step.max_impacts = static_cast<int>(reader.integer("max_impacts", step.max_impacts, {1, 1e6}));
     step.time = reader.number("time", step.time, non_negative);
     reader.finish();
     return step;
+}
+
+LedgerConfig read_ledger(const toml::table& config) {
+    TableReader reader(table(config, "ledger"), "[ledger]");
+    LedgerConfig ledger;
+    ledger.check = reader.boolean("check", ledger.check);
+    ledger.energy = reader.number("energy", ledger.energy, non_negative);
+    ledger.momentum = reader.number("momentum", ledger.momentum, non_negative);
+    ledger.angular_momentum = reader.number("angular_momentum", ledger.angular_momentum, non_negative);
+    ledger.penetration = reader.number("penetration", ledger.penetration, non_negative);
+    reader.finish();
+    return ledger;
 }
 
 std::vector<std::string> read_when(const toml::table& table) {
@@ -77,6 +90,7 @@ PipelineConfig read_pipeline(const toml::table& config, const PluginDefaults& de
                          .choice("walls", pipeline.walls, {"auto", "half_space", "box", "mesh"});
     pipeline.responses = read_responses(config, defaults.response);
     pipeline.step = read_step(config);
+    pipeline.ledger = read_ledger(config);
     return pipeline;
 }
 

@@ -3,6 +3,7 @@
 #include "parts.h"
 
 #include <stdexcept>
+#include <tuple>
 
 namespace kolize::config {
 namespace {
@@ -54,32 +55,33 @@ public:
     Shape read(TableReader& reader, const std::string& name) {
         const std::filesystem::path file = reader.path("file");
         const double scale = reader.number("scale", 1, positive);
-        const auto key = std::pair(std::filesystem::weakly_canonical(file), scale);
+        const bool open = reader.boolean("open", false);
+        const auto key = std::tuple(std::filesystem::weakly_canonical(file), scale, open);
         const auto known = shapes_.find(key);
-        Shape shape = known != shapes_.end() ? known->second : build(reader, file, scale);
+        Shape shape = known != shapes_.end() ? known->second : build(reader, file, scale, open);
         shapes_.emplace(key, shape);
         shape.name = name;
         return shape;
     }
 
 private:
-    Shape build(const TableReader& reader, const std::filesystem::path& file, double scale) {
+    Shape build(const TableReader& reader, const std::filesystem::path& file, double scale, bool open) {
         TriangleSoup soup = read_mesh(file);
         warnings_.insert(warnings_.end(), soup.notes.begin(), soup.notes.end());
         for (Vec3& vertex : soup.vertices) vertex *= scale;
         const std::string mesh = "mesh '" + file.string() + "' ";
-        if (const MeshDefects defects = inspect(soup); !defects.closed())
+        if (const MeshDefects defects = inspect(soup); !open && !defects.closed())
             throw Error(reader.where("file"),
                         mesh + main_defect(defects) + (defects.first.empty() ? "" : ": " + defects.first));
         try {
-            return make_mesh("", soup);
+            return open ? make_surface("", soup) : make_mesh("", soup);
         } catch (const std::invalid_argument& error) {
             throw Error(reader.where("file"), mesh + "cannot be used: " + error.what());
         }
     }
 
     std::vector<std::string>& warnings_;
-    std::map<std::pair<std::filesystem::path, double>, Shape> shapes_;
+    std::map<std::tuple<std::filesystem::path, double, bool>, Shape> shapes_;
 };
 
 Shape read_shape(TableReader& reader, const std::string& name, MeshCache& meshes) {

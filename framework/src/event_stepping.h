@@ -1,0 +1,60 @@
+// Stepping by events: every pair has its own time of impact, every body its own stretch of free motion.
+#pragma once
+
+#include "step_flow.h"
+#include "stepping.h"
+
+namespace kolize {
+
+// Impacts of one step are answered in the order of their times. An impact concerns the bodies that touch at that time
+// and nobody else: all others go on undisturbed, and only pairs with a body whose velocity changed are looked at again.
+// A few fast bodies therefore cost their own impacts and no more.
+class EventStepping : public Stepping {
+public:
+    explicit EventStepping(int max_impacts) : max_impacts_(max_impacts) {}
+    void step(Pipeline& pipeline, double dt) final;
+
+protected:
+    // times[i]: when candidates[i] begins to touch and approach, not before `from`; infinity if not until `until`.
+    virtual void find_impacts(Pipeline& pipeline, std::span<const std::size_t> candidates, double from, double until,
+                              std::span<double> times) = 0;
+    // Adds rows of a candidate at the world's present poses; false if there are none. `known`: its impact is due.
+    virtual bool add_contacts(Pipeline& pipeline, std::size_t candidate, bool known) = 0;
+    // Whether bodies that keep meeting are held until the end of the step. Otherwise their pair is left alone.
+    virtual bool holds_bodies() const = 0;
+    // After the last impact, with all bodies at the end of the step.
+    virtual void finish(Pipeline&, double) {}
+
+    const StepFlow& flow() const { return flow_; }
+
+private:
+    void reserve(std::size_t bodies);
+    void find_first_impacts(Pipeline& pipeline, double dt);
+    std::size_t next_impact(const Pipeline& pipeline) const;
+    bool is_settled(const Pipeline& pipeline, std::size_t candidate) const;
+    void look_again(Pipeline& pipeline, double time, double dt);
+    void answer(Pipeline& pipeline, std::size_t candidate, double dt);
+    void gather(Pipeline& pipeline, std::size_t candidate, double time);
+    void take_bodies(Pipeline& pipeline, std::size_t candidate, double time);
+    bool comes_close(const Pipeline& pipeline, std::size_t candidate, double time) const;
+    void find_changed(Pipeline& pipeline, double time);
+    void give_up(Pipeline& pipeline, std::size_t candidate, double time);
+    void end_step(Pipeline& pipeline, double dt);
+
+    int max_impacts_;
+    StepFlow flow_;
+    std::vector<double> times_;                  // by candidate
+    std::vector<int> impacts_;                   // by candidate, in this step
+    std::vector<std::uint8_t> gathered_;         // by candidate
+    std::vector<std::uint32_t> bodies_;          // dynamic ones of the impact at hand
+    std::vector<std::uint8_t> is_in_, changed_;  // by body
+    std::vector<std::size_t> again_;             // candidates to look at again
+    std::vector<double> again_times_;
+};
+
+// Time of impact by the narrowphase's sweep: nothing is missed, nothing overlaps.
+std::unique_ptr<Stepping> make_continuous(const StepConfig& config);
+// Time of impact by halving between the pose before and the pose after.
+std::unique_ptr<Stepping> make_bisection(const StepConfig& config);
+
+}  // namespace kolize

@@ -1,0 +1,66 @@
+// Two hierarchies walked at once, for the pairs of triangles whose boxes meet.
+#pragma once
+
+#include "box_filter.h"
+
+#include <bit>
+
+namespace kolize {
+
+// Calls visit(triangle of A, triangle of B) for every pair whose boxes are not certainly apart, each pair once, and
+// stops where it returns false.
+template <class Visit>
+class HierarchyWalk {
+public:
+    HierarchyWalk(const MeshPair& pair, Visit visit)
+        : a_(pair.a.hierarchy), b_(pair.b.hierarchy), filter_(pair), visit_(visit) {}
+
+    void run() {
+        if (a_.nodes.empty() || b_.nodes.empty()) return;
+        push_near(0, 0, false, false);
+        while (size_ > 0) {
+            const auto [i, j] = stack_[--size_];
+            const HierarchyNode &a = a_.nodes[i], &b = b_.nodes[j];
+            if (a.is_leaf() && b.is_leaf()) {
+                if (!visit_leaves(a, b)) return;
+            } else {
+                constexpr float comparable = 0.25f;  // of squared sizes
+                const float size_a = a.half.squaredNorm(), size_b = b.half.squaredNorm();
+                const bool into_a = !a.is_leaf() && (b.is_leaf() || size_a >= comparable * size_b);
+                const bool into_b = !b.is_leaf() && (a.is_leaf() || size_b >= comparable * size_a);
+                push_near(into_a ? a.first : i, into_b ? b.first : j, into_a, into_b);
+            }
+        }
+    }
+
+private:
+    // Of node i and, if so told, the one that follows it, and j likewise: those pairs that are not apart.
+    void push_near(std::uint32_t i, std::uint32_t j, bool both_a, bool both_b) {
+        const HierarchyNode* const a[2] = {&a_.nodes[i], &a_.nodes[i + both_a]};
+        const HierarchyNode* const b[2] = {&b_.nodes[j], &b_.nodes[j + both_b]};
+        const unsigned different = (both_a ? 0b1111u : 0b0011u) & (both_b ? 0b1111u : 0b0101u);
+        for (unsigned rest = filter_.nodes_near(a, b) & different; rest != 0; rest &= rest - 1) {
+            const unsigned bit = std::countr_zero(rest);
+            stack_[size_++] = {i + bit / 2, j + bit % 2};
+        }
+    }
+
+    // False when the walk may stop.
+    bool visit_leaves(const HierarchyNode& a, const HierarchyNode& b) {
+        constexpr std::uint32_t size = TriangleBlock::size;
+        const unsigned near = filter_.triangles_near(a_.blocks[a.first / size], b_.blocks[b.first / size]);
+        for (unsigned rest = near; rest != 0; rest &= rest - 1) {
+            const unsigned bit = std::countr_zero(rest), i = bit / size, j = bit % size;
+            if (i < a.count && j < b.count && !visit_(a_.order[a.first + i], b_.order[b.first + j])) return false;
+        }
+        return true;
+    }
+
+    const Hierarchy &a_, &b_;
+    BoxFilter filter_;
+    Visit visit_;
+    std::size_t size_ = 0;
+    std::array<std::pair<std::uint32_t, std::uint32_t>, 192> stack_;  // trees of 2^32 triangles are 30 deep: 60 x 3 + 1
+};
+
+}  // namespace kolize
