@@ -170,10 +170,16 @@ std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
 
 constexpr std::uint32_t above = ~0u;  // marks a vertex that is not below the plane
 
-// Afterwards parent[v] is the lowest vertex of v's connected part below the plane, or `above`.
-void label_submerged(const Mesh& mesh, const Vec3& normal, double offset, std::vector<std::uint32_t>& parent) {
+// Afterwards parent[v] is the lowest vertex of v's connected part below the plane, or `above`. False if all are above.
+bool label_submerged(const Mesh& mesh, const Vec3& normal, double offset, std::vector<std::uint32_t>& parent) {
     parent.resize(mesh.vertices.size());
-    for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = normal.dot(mesh.vertices[v]) < offset ? v : above;
+    bool any = false;
+    for (std::uint32_t v = 0; v < parent.size(); ++v) {
+        const bool below = normal.dot(mesh.vertices[v]) < offset;
+        parent[v] = below ? v : above;
+        any = any || below;
+    }
+    if (!any) return false;
     for (const Edge& edge : mesh.edges) {
         if (parent[edge.v0] == above || parent[edge.v1] == above) continue;
         const auto [low, high] = std::minmax({find_root(parent, edge.v0), find_root(parent, edge.v1)});
@@ -181,6 +187,7 @@ void label_submerged(const Mesh& mesh, const Vec3& normal, double offset, std::v
     }
     for (std::uint32_t v = 0; v < parent.size(); ++v)
         if (parent[v] != above) parent[v] = find_root(parent, v);
+    return true;
 }
 
 }  // namespace
@@ -188,7 +195,7 @@ void label_submerged(const Mesh& mesh, const Vec3& normal, double offset, std::v
 void mesh_half_space(const Mesh& mesh, const Vec3& normal, double offset, MeshScratch& scratch,
                      std::vector<ContactRegion>& regions) {
     if (normal.dot(mesh.bounds.center()) - normal.cwiseAbs().dot(mesh.bounds.half_extents()) >= offset) return;
-    label_submerged(mesh, normal, offset, scratch.parent);
+    if (!label_submerged(mesh, normal, offset, scratch.parent)) return;
     for (std::uint32_t root = 0; root < mesh.vertices.size(); ++root) {
         if (scratch.parent[root] != root) continue;
         scratch.points.clear();

@@ -137,13 +137,17 @@ void Pipeline::moved(std::uint32_t body, const BodyState& before, const BodyStat
 }
 
 void Pipeline::integrate(double dt) {
+    const bool watched = ledger || measure.watches_motion();
     before_.clear();
-    for (std::uint32_t body = 0; body < world.size(); ++body) before_.push_back(world.state(body));
+    for (std::uint32_t body = 0; watched && body < world.size(); ++body) before_.push_back(world.state(body));
     const auto start = StageClock::Clock::now();
     integrator_->advance(world, dt, host_);
     measure.clock.add(Phase::integrate, StageClock::Clock::now() - start);
-    for (std::uint32_t body = 0; body < world.size(); ++body)
-        if (!world.is_static[body] && !world.removed[body]) moved(body, before_[body], world.state(body), dt);
+    for (std::uint32_t body = 0; body < world.size(); ++body) {
+        if (world.is_static[body] || world.removed[body]) continue;
+        const BodyState after = world.state(body);
+        watched ? moved(body, before_[body], after, dt) : require_finite_motion(body, after);
+    }
 }
 
 void Pipeline::detect() {

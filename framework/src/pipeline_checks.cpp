@@ -9,11 +9,12 @@ namespace {
 
 // A sum of finite numbers times zero is zero.
 bool is_finite(const Vec3& v) { return 0 * v.x() + 0 * v.y() + 0 * v.z() == 0; }
+bool is_finite(const Quat& q) { return 0 * q.w() + 0 * q.x() + 0 * q.y() + 0 * q.z() == 0; }
 
 // Nullptr if there is none.
 const char* unusable_quantity(const BodyState& state) {
     if (!is_finite(state.position)) return "position";
-    if (!state.orientation.coeffs().allFinite()) return "orientation";
+    if (!is_finite(state.orientation)) return "orientation";
     if (!is_finite(state.velocity)) return "velocity";
     return is_finite(state.angular_velocity) ? nullptr : "angular velocity";
 }

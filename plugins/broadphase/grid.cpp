@@ -89,22 +89,28 @@ private:
         const Vec3 half = 0.5 * box.max - 0.5 * box.min;
         return std::max({half.x(), half.y(), half.z(), 0.5 * cell_size_});
     }
-    SizeClass& class_of(double size) { return classes_[std::bit_cast<std::uint64_t>(size) >> 52]; }
+    static std::size_t class_index(double size) { return std::bit_cast<std::uint64_t>(size) >> 52; }
+    SizeClass& class_of(double size) { return classes_[class_index(size)]; }
 
     void choose_levels(std::span<const Aabb> bounds) {
-        classes_.fill({});
+        std::fill(classes_.begin() + first_class_, classes_.begin() + end_class_, SizeClass{});
+        first_class_ = classes_.size();
+        end_class_ = 0;
         corners_ = {};
         for (const Aabb& box : bounds) {
             const double size = half_side(box);
             SizeClass& c = class_of(size);
             c.longest = std::max(c.longest, size);
             ++c.count;
+            first_class_ = std::min(first_class_, class_index(size));
+            end_class_ = std::max(end_class_, class_index(size) + 1);
             corners_.include(box.min);
         }
+        if (first_class_ > end_class_) first_class_ = end_class_;  // no box
         levels_.reserve(max_levels);
         levels_.clear();
         double coarsest = 0;
-        for (std::size_t i = classes_.size(); i-- > 0;) {
+        for (std::size_t i = end_class_; i-- > first_class_;) {
             SizeClass& c = classes_[i];
             if (c.count == 0) continue;
             if (levels_.empty() || (c.longest * level_ratio < coarsest && levels_.size() < max_levels)) {
@@ -232,6 +238,7 @@ private:
     double cell_size_ = 0;
 
     std::array<SizeClass, 2048> classes_;
+    std::size_t first_class_ = 0, end_class_ = 0;  // those in use
     Aabb corners_;  // of the min corners
     std::vector<Level> levels_;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> unsorted_;
