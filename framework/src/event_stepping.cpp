@@ -38,6 +38,7 @@ void EventStepping::reserve(std::size_t bodies) {
 
 void EventStepping::find_first_impacts(Pipeline& pipeline, double dt) {
     reserve(pipeline.world.size());
+    pipeline.contacts.clear();
     flow_.begin_step(pipeline.world, pipeline.integrator(), dt);
     pipeline.find_candidates(flow_, dt);
     again_.resize(pipeline.candidates().size());

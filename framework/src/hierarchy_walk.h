@@ -7,17 +7,28 @@
 
 namespace kolize {
 
+struct IdPair {
+    std::uint32_t a, b;
+};
+
+// False if one of the meshes is empty or the boxes around them are certainly apart.
+inline bool roots_near(const MeshPair& pair, const BoxFilter& filter) {
+    if (pair.a.hierarchy.nodes.empty() || pair.b.hierarchy.nodes.empty()) return false;
+    const HierarchyNode *a = pair.a.hierarchy.nodes.data(), *b = pair.b.hierarchy.nodes.data();
+    return filter.nodes_near({a, a}, {b, b}) != 0;
+}
+
 // Calls visit(triangle of A, triangle of B) for every pair whose boxes are not certainly apart, each pair once, and
 // stops where it returns false.
 template <class Visit>
 class HierarchyWalk {
 public:
-    HierarchyWalk(const MeshPair& pair, Visit visit)
-        : a_(pair.a.hierarchy), b_(pair.b.hierarchy), filter_(pair), visit_(visit) {}
+    // The roots are near each other.
+    HierarchyWalk(const MeshPair& pair, const BoxFilter& filter, Visit visit)
+        : a_(pair.a.hierarchy), b_(pair.b.hierarchy), filter_(filter), visit_(visit) {}
 
     void run() {
-        if (a_.nodes.empty() || b_.nodes.empty()) return;
-        push_near(0, 0, false, false);
+        stack_[size_++] = {0, 0};
         while (size_ > 0) {
             const auto [i, j] = stack_[--size_];
             const HierarchyNode &a = a_.nodes[i], &b = b_.nodes[j];
@@ -57,10 +68,10 @@ private:
     }
 
     const Hierarchy &a_, &b_;
-    BoxFilter filter_;
+    const BoxFilter& filter_;
     Visit visit_;
     std::size_t size_ = 0;
-    std::array<std::pair<std::uint32_t, std::uint32_t>, 192> stack_;  // trees of 2^32 triangles are 30 deep: 60 x 3 + 1
+    std::array<IdPair, 192> stack_;  // trees of 2^32 triangles are 30 deep: 60 x 3 + 1
 };
 
 }  // namespace kolize

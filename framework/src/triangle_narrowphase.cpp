@@ -1,10 +1,12 @@
 #include "hierarchy_walk.h"
 
+#include <optional>
+
 namespace kolize {
 
 namespace {
 
-// Collects the pairs of triangles whose boxes overlap in A's frame, and hands them over in batches.
+// Collects the pairs of triangles that the walk finds, and hands them to the test in batches.
 template <class Test>
 class Batch {
 public:
@@ -32,30 +34,35 @@ private:
     Test& test_;
     std::size_t count_ = 0;
     std::array<TrianglePair, 64> pairs_;
-    std::array<std::pair<std::uint32_t, std::uint32_t>, 64> ids_;
+    std::array<IdPair, 64> ids_;
     std::size_t limit_;
 };
 
 }  // namespace
 
 void TriangleNarrowphase::intersect_meshes(const MeshPair& pair, TriangleHits& hits) const {
+    const BoxFilter filter(pair);
+    if (!roots_near(pair, filter)) return;  // many pairs of bodies end here: nothing else is set up before
     std::array<std::uint8_t, 64> hit;
-    std::array<TriangleSegment, 64> segments;
+    std::optional<std::array<TriangleSegment, 64>> segments;
+    if (pair.want_segments) segments.emplace();
     // Tests one batch; false once nothing more needs to be known.
     auto test = [&](auto ids, std::span<const TrianglePair> pairs) {
-        const std::size_t count = pairs.size(), wanted = pair.want_segments ? count : 0;
-        intersect_triangles(pairs, {hit.data(), count}, {segments.data(), wanted});
+        const std::size_t count = pairs.size();
+        using Segments = std::span<TriangleSegment>;
+        intersect_triangles(pairs, std::span(hit).first(count),
+                            segments ? Segments(*segments).first(count) : Segments());
         hits.tests += count;
         for (std::size_t i = 0; i < count; ++i)
             if (hit[i]) {
-                hits.hits.push_back({ids[i].first, ids[i].second, wanted ? segments[i] : TriangleSegment{}});
+                hits.hits.push_back({ids[i].a, ids[i].b, segments ? (*segments)[i] : TriangleSegment{}});
                 if (pair.first_only) return false;
             }
         return true;
     };
     Batch batch(pair, test);
     bool go_on = true;
-    HierarchyWalk(pair, [&](std::uint32_t a, std::uint32_t b) { return go_on = batch.add(a, b); }).run();
+    HierarchyWalk(pair, filter, [&](std::uint32_t a, std::uint32_t b) { return go_on = batch.add(a, b); }).run();
     if (go_on) batch.flush();
 }
 

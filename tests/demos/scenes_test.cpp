@@ -64,7 +64,7 @@ TEST_CASE("The box demos have the bodies that their descriptions promise", "[dem
 TEST_CASE("Every pipeline of the box demos loads with its scene", "[demos]") {
     for (const std::string& name : scene_names)
         for (const auto& [pipeline, mode] :
-             {std::pair("thesis", "rollback"), std::pair("fast", "discrete"), std::pair("accurate", "bisection")}) {
+             {std::pair("thesis", "rollback"), std::pair("fast", "discrete"), std::pair("accurate", "continuous")}) {
             CAPTURE(name, pipeline);
             const PipelineConfig config = load(name, pipeline).pipeline;
             CHECK(config.step.mode == mode);

@@ -61,7 +61,7 @@ TEST_CASE("inspect says that a soup has no triangles", "[mesh]") {
     CHECK(defects.first == "it has no triangles (points.ply)");
 }
 
-TEST_CASE("inspect counts the open edges of a missing triangle", "[mesh]") {
+TEST_CASE("M9 broken: inspect counts the open edges of a missing triangle", "[mesh]") {
     TriangleSoup soup = named_box();
     soup.triangles.erase(soup.triangles.begin());  // {0, 4, 6}
     soup.lines.erase(soup.lines.begin());

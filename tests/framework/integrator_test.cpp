@@ -61,7 +61,8 @@ bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(a.data(), b.da
 
 }  // namespace
 
-TEST_CASE("pdmv4 keeps energy and angular momentum of a tumbling body to rounding", "[integrator]") {
+TEST_CASE("I2 fighter-spin, I6 stable axis: pdmv4 keeps energy and angular momentum of a tumbling body to rounding",
+          "[integrator]") {
     // Tumbling, about the unstable axis, fast, and needing sub-steps (10 rad a step).
     for (const Vec3& spin : {Vec3(2, 1, 1), Vec3(0.02, 3, 0.02), Vec3(20, 20, 20), Vec3(300, 400, 300)}) {
         CAPTURE(spin.transpose());
@@ -72,7 +73,7 @@ TEST_CASE("pdmv4 keeps energy and angular momentum of a tumbling body to roundin
     }
 }
 
-TEST_CASE("pdmv4 turns a body over with the period of the Jacobi functions", "[integrator]") {
+TEST_CASE("I1 dzhanibekov: pdmv4 turns a body over with the period of the Jacobi functions", "[integrator]") {
     const Vec3 moments(1, 2, 3), spin(0.01, 1, 0.01);
     // w(t) in body axes has the period 4 K(k) / lambda: Landau & Lifshitz, Mechanics, section 37, for L^2 > 2 E I2.
     const double energy = 0.5 * spin.dot(moments.cwiseProduct(spin));
@@ -107,7 +108,22 @@ TEST_CASE("pdmv4 follows the true attitude with order 4", "[integrator]") {
     CHECK(coarse / fine == Approx(16).epsilon(0.05));
 }
 
-TEST_CASE("pdmv4 precesses a symmetric top at the closed-form rates", "[integrator]") {
+// Decades in quarters: the largest angle per step at which ten seconds of tumbling are followed to 1e-3 rad.
+TEST_CASE("I7 h-w sweep: pdmv4 follows the attitude to 1e-3 rad up to a tenth of a radian per step at least",
+          "[integrator]") {
+    const Vec3 spin(0.02, 3, 0.02);
+    double largest = 0;
+    for (double angle = 1e-3; angle < 10; angle *= std::pow(10, 0.25)) {
+        const int steps = static_cast<int>(std::ceil(10 * spin.norm() / angle));
+        const double error = attitude_error_after(10, steps, fighter, spin);
+        CHECK(std::isfinite(error));
+        if (error < 1e-3) largest = angle;
+    }
+    INFO("largest: " << largest << " rad a step");
+    CHECK(largest >= 0.1);
+}
+
+TEST_CASE("I4 symmetric top: pdmv4 precesses a symmetric top at the closed-form rates", "[integrator]") {
     const Vec3 moments(1, 1, 2), spin(1, 0, 5);
     World world = spinning(moments, spin);
     const double time = 10;
@@ -122,7 +138,8 @@ TEST_CASE("pdmv4 precesses a symmetric top at the closed-form rates", "[integrat
     CHECK(attitude_error(world.orientation[0], expected) < 1e-6);
 }
 
-TEST_CASE("A body with three equal moments keeps its angular velocity bit for bit and turns exactly", "[integrator]") {
+TEST_CASE("I3 cube-spin: a body with three equal moments keeps its angular velocity bit for bit and turns exactly",
+          "[integrator]") {
     const Vec3 spin(1, 2, 3);
     World world = spinning(Vec3::Ones(), spin, Quat(Eigen::AngleAxisd(0.3, Vec3::UnitX())));
     advance(world, "pdmv4", 1e-3, 100000);
@@ -132,7 +149,7 @@ TEST_CASE("A body with three equal moments keeps its angular velocity bit for bi
     CHECK(attitude_error(world.orientation[0], expected) < 5e-13);  // rounding of 100 000 products
 }
 
-TEST_CASE("pdmv4 comes back to the start when time is reversed", "[integrator]") {
+TEST_CASE("I8 reversal: pdmv4 comes back to the start when time is reversed", "[integrator]") {
     const Vec3 spin(0.02, 3, 0.02);
     World world = spinning(fighter, spin);
     advance(world, "pdmv4", 1 / 60.0, 100000);
@@ -153,7 +170,7 @@ TEST_CASE("pdmv4 keeps a spin of any size finite", "[integrator]") {
     }
 }
 
-TEST_CASE("Gravity and a constant force give the exact parabola at any step", "[integrator]") {
+TEST_CASE("I5 parabola: gravity and a constant force give the exact parabola at any step", "[integrator]") {
     for (const long steps : {1, 7, 600, 10000}) {
         CAPTURE(steps);
         World world = empty_world();

@@ -79,14 +79,14 @@ TriangleSoup tetrahedra_on_origin(int count, std::mt19937& random) {
 
 }  // namespace
 
-TEST_CASE("A cube of side 500 has its closed-form mass properties", "[mass]") {
+TEST_CASE("M1 cube500: a cube of side 500 has its closed-form mass properties", "[mass]") {
     const MassProperties mass = mass_properties(box_soup(Vec3::Constant(250)));
     CHECK(mass.volume == Approx(1.25e8).epsilon(1e-14));
     CHECK(mass.center_of_mass.norm() <= 1e-12);
     CHECK(relative_error(mass.inertia_over_mass, Mat3::Identity() * (125000.0 / 3)) <= 1e-14);
 }
 
-TEST_CASE("A cone of 48 sides has its closed-form mass properties", "[mass]") {
+TEST_CASE("M2 cone48: a cone of 48 sides has its closed-form mass properties", "[mass]") {
     const double t = 2 * std::numbers::pi / 48, axial = 1000 * (2 + std::cos(t));  // r^2 (2 + cos t) / 10
     const double transverse = axial / 2 + 3 * 300.0 * 300.0 / 80;
     const MassProperties mass = mass_properties(cone48());
@@ -95,7 +95,7 @@ TEST_CASE("A cone of 48 sides has its closed-form mass properties", "[mass]") {
     CHECK(relative_error(mass.inertia_over_mass, Vec3(transverse, axial, transverse).asDiagonal()) <= 1e-14);
 }
 
-TEST_CASE("A right tetrahedron has the products of inertia of its closed form", "[mass]") {
+TEST_CASE("M3 tetra-products: a right tetrahedron has the products of inertia of its closed form", "[mass]") {
     const MassProperties mass = mass_properties(corner_tetrahedron());
     const Mat3 exact = Mat3::Constant(1.0 / 80) + Mat3::Identity() * (3.0 / 40 - 1.0 / 80);
     CHECK(mass.volume == Approx(1.0 / 6).epsilon(1e-15));
@@ -107,7 +107,7 @@ TEST_CASE("A right tetrahedron has the products of inertia of its closed form", 
     CHECK((moments - Vec3(1.0 / 16, 1.0 / 16, 1.0 / 10)).norm() <= 1e-16);
 }
 
-TEST_CASE("Mass properties of a far cube are those of its rounded vertices", "[mass]") {
+TEST_CASE("M4 far-cube: mass properties of a far cube are those of its rounded vertices", "[mass]") {
     std::mt19937 random(2024);
     double distance = 1;
     for (int k = 0; k <= 9; ++k, distance *= 10)
@@ -126,7 +126,7 @@ TEST_CASE("Mass properties of a far cube are those of its rounded vertices", "[m
         }
 }
 
-TEST_CASE("A plate of any thinness has its closed-form mass properties", "[mass]") {
+TEST_CASE("M5 plate: a plate of any thinness has its closed-form mass properties", "[mass]") {
     double t = 1;
     for (int k = 0; k <= 100; ++k, t /= 10) {
         CAPTURE(k);
@@ -146,7 +146,7 @@ TEST_CASE("A needle keeps the small moment about its axis", "[mass]") {
     }
 }
 
-TEST_CASE("A finer mesh of the same cube has the same mass properties", "[mass]") {
+TEST_CASE("M7 dense: a finer mesh of the same cube has the same mass properties", "[mass]") {
     TriangleSoup cube = box_soup(Vec3::Constant(250));
     for (int k = 0; k <= 7; ++k, cube = subdivided(cube)) {
         CAPTURE(k);
@@ -192,7 +192,7 @@ TEST_CASE("The order of the triangles does not matter", "[mass]") {
     }
 }
 
-TEST_CASE("The inertia tensor turns with the mesh", "[mass]") {
+TEST_CASE("M8 rotate: the inertia tensor turns with the mesh", "[mass]") {
     const Mat3 tensor = mass_properties(corner_tetrahedron()).inertia_over_mass;
     std::mt19937 random(8);
     for (int i = 0; i < 1000; ++i) {

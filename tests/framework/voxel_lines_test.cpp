@@ -117,7 +117,7 @@ TEST_CASE("Hits become crossings line by line, by depth, and at the same depth t
     }
 }
 
-TEST_CASE("No line through vertices, edges and faces of a closed surface is odd", "[voxel]") {
+TEST_CASE("N4 parity: no line through vertices, edges and faces of a closed surface is odd", "[voxel]") {
     std::uint64_t lines = 0;
     const auto check = [&](const TriangleSoup& solid, const VoxelOptions& options) {
         const VoxelMassProperties voxel = voxels(solid, options, 2);

@@ -101,7 +101,8 @@ TEST_CASE("The thesis' count has a cell too many on every line: first order in t
 
 // Terms of up to 125000 no longer change a float of 2^41: the sum about each axis across the lines stops there, and
 // that about the lines, which has a term a line, does not get so far. Lines along one axis tell the two apart.
-TEST_CASE("A running float stands still at 2^41 in the thesis' sums over a cube", "[voxel][thesis]") {
+TEST_CASE("M6 float-saturation: a running float stands still at 2^41 in the thesis' sums over a cube",
+          "[voxel][thesis]") {
     const double n = GENERATE(600.0, 640.0);
     CAPTURE(n);
     const VoxelMassProperties voxel =

@@ -36,15 +36,15 @@ World two_bodies(const Extreme& extreme, Random& random) {
     return world;
 }
 
-Worst worst_of(const std::string& order, const Extreme& extreme, std::int64_t max_impulses, int rounds = 200) {
+Worst worst_of(const std::string& order, const Extreme& extreme, std::int64_t max_impulses, int rounds = 40) {
     Random random(100);
     Worst worst;
     ResponsePlugin impulse("impulse", {{"order", order}, {"max_impulses", max_impulses}});
     for (int round = 0; round < rounds; ++round) {
         World world = two_bodies(extreme, random);
         std::vector<Contact> contacts = random_contacts(world, random, extreme.contacts, extreme.spread, extreme.reach);
-        const World start = world;
-        const Invariants before(start);
+        const double speed = contact_speed(world, contacts);
+        const Invariants before(world);
         impulse.respond(world, contacts);
         const Invariants after(world);
         double passed_on = before.momentum_scale;
@@ -53,7 +53,7 @@ Worst worst_of(const std::string& order, const Extreme& extreme, std::int64_t ma
         note(worst.energy, std::abs(before.energy - after.energy - impulse.dissipated_J) / before.energy);
         note(worst.momentum, (after.momentum - before.momentum).norm() / passed_on);
         note(worst.angular_momentum, (after.angular_momentum - before.angular_momentum).norm() / passed_on);
-        note(worst.approach, worst_approach(start, world, contacts));
+        note(worst.approach, fastest_approach(world, contacts) / speed);
         worst.unresolved += impulse.unresolved > 0;
     }
     return worst;
@@ -76,24 +76,24 @@ void check_bounds(const Extreme& extreme, std::int64_t max_impulses = 64) {
 
 TEST_CASE("One impact is exact up to mass ratio 1e15, condition 1e12 and arms of 1e6 sizes", "[impulse][extremes]") {
     for (const double restitution : {0.0, 0.5, 1.0}) {
-        for (const double ratio : {1e-15, 1e-9, 1e-3, 1.0, 1e3, 1e9, 1e15})
+        for (const double ratio : {1e-15, 1e-6, 1.0, 1e6, 1e15})
             check_bounds({.mass_ratio = ratio, .restitution = restitution});
-        for (const double condition : {1.0, 1e2, 1e4, 1e6, 1e8, 1e10, 1e12})
+        for (const double condition : {1.0, 1e3, 1e6, 1e9, 1e12})
             check_bounds({.condition = condition, .restitution = restitution});
         for (const double reach : {1.0, 1e2, 1e4, 1e6}) check_bounds({.reach = reach, .restitution = restitution});
     }
 }
 
 TEST_CASE("Up to 64 contacts with normals as near as 1e-8 are answered by at most 64 impulses", "[impulse][extremes]") {
-    for (const int contacts : {1, 2, 4, 8, 16, 32, 64})
-        for (const double spread : {0.1, 1e-2, 1e-4, 1e-8, 1e-12})
+    for (const int contacts : {2, 8, 32, 64})
+        for (const double spread : {0.1, 1e-4, 1e-8, 1e-12})
             check_bounds({.contacts = contacts, .spread = spread}, 64 / contacts);
 }
 
 TEST_CASE("Sixteen contacts at once hold their bounds up to mass ratio 1e15, at any restitution",
           "[impulse][extremes]") {
-    for (const double restitution : {0.0, 0.1, 0.5, 0.9, 1.0})
-        for (const double ratio : {1.0, 1e3, 1e6, 1e9, 1e12, 1e15})
+    for (const double restitution : {0.0, 0.5, 1.0})
+        for (const double ratio : {1e3, 1e9, 1e15})
             check_bounds({.mass_ratio = ratio, .contacts = 16, .restitution = restitution});
 }
 
@@ -110,7 +110,7 @@ TEST_CASE("Contacts too many and too far out for an answer are reported, and no 
     for (const std::string order : {"sequential", "symmetric"})
         for (const double reach : {1e2, 1e4, 1e6}) {
             CAPTURE(order, reach);
-            const Worst worst = worst_of(order, {.reach = reach, .contacts = 16}, 64, 20);
+            const Worst worst = worst_of(order, {.reach = reach, .contacts = 16}, 16, 5);
             CHECK(worst.energy <= 1e-12);
             if (worst.unresolved == 0) CHECK(worst.approach <= 1e-12);
         }

@@ -77,16 +77,20 @@ inline void sort_canonically(std::vector<kolize::Contact>& contacts) {
     });
 }
 
-// The fastest approach that is left at a contact, as a share of the speeds at the contacts before the response.
-inline double worst_approach(const kolize::World& before, const kolize::World& after,
-                             const std::vector<kolize::Contact>& contacts) {
-    double approach = 0, speed = 0;
-    for (const kolize::Contact& c : contacts) {
-        approach = std::max(approach, -normal_velocity(after, c));
-        speed = std::max(speed, before.velocity[c.a].norm() + before.angular_velocity[c.a].norm() * c.arm_a.norm() +
-                                    before.velocity[c.b].norm() + before.angular_velocity[c.b].norm() * c.arm_b.norm());
-    }
-    return approach > 0 ? approach / speed : 0;
+// The largest of the speeds that the normal velocities of the contacts are differences of, m/s.
+inline double contact_speed(const kolize::World& world, const std::vector<kolize::Contact>& contacts) {
+    double speed = 0;
+    for (const kolize::Contact& c : contacts)
+        speed = std::max(speed, world.velocity[c.a].norm() + world.angular_velocity[c.a].norm() * c.arm_a.norm() +
+                                    world.velocity[c.b].norm() + world.angular_velocity[c.b].norm() * c.arm_b.norm());
+    return speed;
+}
+
+// m/s; 0 where no contact approaches.
+inline double fastest_approach(const kolize::World& world, const std::vector<kolize::Contact>& contacts) {
+    double approach = 0;
+    for (const kolize::Contact& c : contacts) approach = std::max(approach, -normal_velocity(world, c));
+    return approach;
 }
 
 // Contacts of bodies 0 and 1 at random points, with normals that lean from a common one by `spread` at most (as a

@@ -82,7 +82,7 @@ public:
 
     const World& world() const;
     const std::vector<Pair>& pairs() const;    // of the last step, canonical order, body ids
-    const Contacts& contacts() const;          // of the last step
+    const Contacts& contacts() const;          // of the last step (bisection, continuous: of its last impact)
     const std::vector<Event>& events() const;  // of the last step
     RunResult result() const;
     std::uint64_t state_hash() const;  // FNV-1a over the bits of all bodies' state
