@@ -12,7 +12,8 @@ Lanes slack_for(const MeshPair& pair) {
     constexpr double unit = 0x1p-24, smallest = 1e-37, too_large = 1e30;
     const double reach = pair.a.radius + pair.b.radius + pair.b_to_a.translation.norm();
     const bool usable = reach < too_large;
-    return all_lanes(usable ? static_cast<float>(50 * unit * reach + smallest) : std::numeric_limits<float>::infinity());
+    return all_lanes(usable ? static_cast<float>(50 * unit * reach + smallest)
+                            : std::numeric_limits<float>::infinity());
 }
 
 // The boxes of two nodes, each in two lanes: 0 0 1 1.
@@ -44,7 +45,8 @@ struct BoxesInTurn {
         half[2] = __builtin_shufflevector(r, s, 2, 6, 2, 6);
     }
 };
-static_assert(sizeof(HierarchyNode) == 32 && offsetof(HierarchyNode, half) == 12, "four floats from either can be read");
+static_assert(sizeof(HierarchyNode) == 32 && offsetof(HierarchyNode, half) == 12,
+              "four floats from either can be read");
 
 struct LaneBox {
     Lanes low[3], high[3];
@@ -73,9 +75,10 @@ unsigned BoxFilter::nodes_near(const HierarchyNode* const (&nodes_a)[2],
     Lanes between[3], gap = -slack_;
     for (int k = 0; k < 3; ++k) {
         const auto &turn = rotation_[k], &reach = reach_[k];
-        between[k] = turn[0] * b.center[0] + turn[1] * b.center[1] + turn[2] * b.center[2] + translation_[k] - a.center[k];
-        gap = max(gap, abs(between[k]) - a.half[k] -
-                           (reach[0] * b.half[0] + reach[1] * b.half[1] + reach[2] * b.half[2]));
+        between[k] =
+            turn[0] * b.center[0] + turn[1] * b.center[1] + turn[2] * b.center[2] + translation_[k] - a.center[k];
+        gap = max(gap,
+                  abs(between[k]) - a.half[k] - (reach[0] * b.half[0] + reach[1] * b.half[1] + reach[2] * b.half[2]));
     }
     for (int k = 0; k < 3; ++k) {
         const Lanes along = rotation_[0][k] * between[0] + rotation_[1][k] * between[1] + rotation_[2][k] * between[2];
