@@ -29,11 +29,11 @@ private:
         return pipeline.add_contacts(candidate, false) && pipeline.approaching();
     }
 
-    bool add_contacts(Pipeline& pipeline, std::size_t candidate, bool) override {
+    bool add_contacts(Pipeline& pipeline, std::size_t candidate, bool, double) override {
         return pipeline.add_contacts(candidate, false);
     }
 
-    bool holds_bodies() const override { return false; }
+    bool keeps_apart() const override { return false; }
 
     // What overlaps at the end is answered as in discrete stepping, if it approaches at all.
     void finish(Pipeline& pipeline, double dt) override {

@@ -17,11 +17,11 @@ private:
     }
 
     // Bodies that overlap from the start have no touching points: they are parted as in discrete stepping.
-    bool add_contacts(Pipeline& pipeline, std::size_t candidate, bool known) override {
-        return pipeline.add_contacts(candidate, true) || (known && pipeline.add_contacts(candidate, false));
+    bool add_contacts(Pipeline& pipeline, std::size_t candidate, bool known, double reach) override {
+        return pipeline.add_contacts(candidate, true, reach) || (known && pipeline.add_contacts(candidate, false));
     }
 
-    bool holds_bodies() const override { return true; }
+    bool keeps_apart() const override { return true; }
 
     std::vector<Pair> pairs_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <stdexcept>
 
 namespace kolize {
 
@@ -11,7 +12,14 @@ bool same_motion(const BodyState& x, const BodyState& y) {
     return x.velocity == y.velocity && x.angular_velocity == y.angular_velocity;
 }
 
-bool is_fixed(const World& world, std::uint32_t body) { return world.is_static[body] || world.removed[body]; }
+template <class Call>
+void follow(const Pipeline& pipeline, Call&& call) {
+    try {
+        call();
+    } catch (const std::runtime_error& e) {
+        pipeline.refuse_motion(e.what());
+    }
+}
 
 }  // namespace
 
@@ -39,12 +47,13 @@ void EventStepping::reserve(std::size_t bodies) {
 void EventStepping::find_first_impacts(Pipeline& pipeline, double dt) {
     reserve(pipeline.world.size());
     pipeline.contacts.clear();
-    flow_.begin_step(pipeline.world, pipeline.integrator(), dt);
+    follow(pipeline, [&] { flow_.begin_step(pipeline.world, pipeline.integrator(), dt); });
     pipeline.find_candidates(flow_, dt);
     again_.resize(pipeline.candidates().size());
     std::iota(again_.begin(), again_.end(), std::size_t(0));
     times_.assign(again_.size(), infinity);
     impacts_.assign(again_.size(), 0);
+    settled_.assign(pipeline.world.size(), 0);
     find_impacts(pipeline, again_, 0, dt, times_);
 }
 
@@ -61,33 +70,47 @@ std::size_t EventStepping::next_impact(const Pipeline& pipeline) const {
 // The impact of one candidate, and of all that touches the same bodies at that moment.
 void EventStepping::answer(Pipeline& pipeline, std::size_t candidate, double dt) {
     const double time = times_[candidate];
-    gather(pipeline, candidate, time);
-    pipeline.respond(dt);
+    ++impacts_[candidate];
+    gather(pipeline, candidate, dt, false);
+    const bool at_rest = rests(pipeline, candidate, dt);
+    if (at_rest) {
+        settle(pipeline, candidate, dt);
+    } else {
+        for (Contact& c : pipeline.contacts.rows)
+            c.depth = std::max(c.depth, 0.0);  // what lies on something touches it
+        pipeline.respond(dt);
+    }
     find_changed(pipeline, time);
-    const bool too_often = ++impacts_[candidate] > max_impacts_;
-    if (bodies_.empty() || too_often) give_up(pipeline, candidate, time);
+    if (bodies_.empty() || impacts_[candidate] > (at_rest ? 2 : 1) * max_impacts_) give_up(pipeline, candidate, time);
     look_again(pipeline, time, dt);
 }
 
-// Contacts spread from body to body: what touches a body that may be struck is part of the same impact.
-void EventStepping::gather(Pipeline& pipeline, std::size_t candidate, double time) {
+// Contacts spread from body to body: what touches a body that may be struck is part of the same impact. So are, with
+// their gaps, contacts of bodies that were let go in this step, as they lie on each other; and when all settle those
+// that would close within the step, as otherwise one would be let go onto the other.
+void EventStepping::gather(Pipeline& pipeline, std::size_t candidate, double dt, bool settling) {
+    const double time = times_[candidate];
+    const auto add = [&](std::size_t some, bool known) {
+        const double gap = reach(pipeline, some, dt, settling);
+        return gap > 0 ? add_resting(pipeline, some, gap, dt) : add_contacts(pipeline, some, known, 0);
+    };
     pipeline.contacts.clear();
     bodies_.clear();
     is_in_.assign(pipeline.world.size(), 0);
     gathered_.assign(pipeline.candidates().size(), 0);
     take_bodies(pipeline, candidate, time);
     gathered_[candidate] = 1;
-    add_contacts(pipeline, candidate, true);
+    add(candidate, true);
     for (std::size_t i = 0; i < bodies_.size(); ++i)
         for (std::size_t other = 0; other < gathered_.size(); ++other) {
             const Pair& pair = pipeline.candidates()[other];
             if (gathered_[other] || (pair.a != bodies_[i] && pair.b != bodies_[i])) continue;
             gathered_[other] = 1;
             if (pipeline.world.removed[pair.a] || pipeline.world.removed[pair.b]) continue;
-            if (!comes_close(pipeline, other, time)) continue;
+            if (!comes_close(pipeline, other, time, reach(pipeline, other, dt, settling))) continue;
             for (const std::uint32_t body : {pair.a, pair.b})
                 if (!is_in_[body]) pipeline.world.set_state(body, flow_.state(body, time));
-            if (add_contacts(pipeline, other, false)) take_bodies(pipeline, other, time);
+            if (add(other, false)) take_bodies(pipeline, other, time);
         }
     pipeline.sort_contacts();
 }
@@ -102,13 +125,13 @@ void EventStepping::take_bodies(Pipeline& pipeline, std::size_t candidate, doubl
     }
 }
 
-bool EventStepping::comes_close(const Pipeline& pipeline, std::size_t candidate, double time) const {
+bool EventStepping::comes_close(const Pipeline& pipeline, std::size_t candidate, double time, double reach) const {
     const Pair& pair = pipeline.candidates()[candidate];
     const World& world = pipeline.world;
     const Shape &a = world.shape_of(pair.a), &b = world.shape_of(pair.b);
     if (a.kind == ShapeKind::half_space || b.kind == ShapeKind::half_space) return true;
-    const double reach = a.radius + b.radius + 8 * touch_distance(world, pair.a, pair.b);
-    return (flow_.at(pair.a, time).position - flow_.at(pair.b, time).position).squaredNorm() <= reach * reach;
+    const double far = a.radius + b.radius + reach + 8 * touch_distance(world, pair.a, pair.b);
+    return (flow_.at(pair.a, time).position - flow_.at(pair.b, time).position).squaredNorm() <= far * far;
 }
 
 // Leaves in bodies_ those whose motion the response has changed, and begins their new motion.
@@ -118,7 +141,7 @@ void EventStepping::find_changed(Pipeline& pipeline, double time) {
         const BodyState before = flow_.state(body, time), after = pipeline.world.state(body);
         if (same_motion(before, after) && !pipeline.world.removed[body]) continue;
         pipeline.moved(body, flow_.start(body), before, flow_.is_held(body) ? 0 : time - flow_.begin_of(body));
-        flow_.begin(body, time, after);
+        follow(pipeline, [&] { flow_.begin(body, time, after); });
         bodies_[kept++] = body;
     }
     bodies_.resize(kept);
@@ -134,7 +157,7 @@ void EventStepping::give_up(Pipeline& pipeline, std::size_t candidate, double ti
         });
     times_[candidate] = infinity;
     impacts_[candidate] = max_impacts_ + 1;
-    if (overlaps || !holds_bodies() || !pipeline.is_detailed(candidate)) return;
+    if (overlaps || !keeps_apart() || !pipeline.is_detailed(candidate)) return;
     ++pipeline.measure.unresolved;
     for (const std::uint32_t body : {pair.a, pair.b}) {
         if (is_fixed(pipeline.world, body) || flow_.is_held(body)) continue;
@@ -145,12 +168,12 @@ void EventStepping::give_up(Pipeline& pipeline, std::size_t candidate, double ti
 }
 
 // Nothing can come of this pair until the end of the step.
-bool EventStepping::is_settled(const Pipeline& pipeline, std::size_t candidate) const {
+bool EventStepping::is_done(const Pipeline& pipeline, std::size_t candidate) const {
     const Pair& pair = pipeline.candidates()[candidate];
     const World& world = pipeline.world;
     const auto still = [&](std::uint32_t body) { return flow_.is_held(body) || is_fixed(world, body); };
     if (world.removed[pair.a] || world.removed[pair.b] || (still(pair.a) && still(pair.b))) return true;
-    return impacts_[candidate] > max_impacts_ && !(holds_bodies() && pipeline.is_detailed(candidate));
+    return impacts_[candidate] > max_impacts_ && !(keeps_apart() && pipeline.is_detailed(candidate));
 }
 
 void EventStepping::look_again(Pipeline& pipeline, double time, double dt) {
@@ -169,7 +192,7 @@ void EventStepping::look_again(Pipeline& pipeline, double time, double dt) {
         const Pair& pair = pipeline.candidates()[i];
         if (!changed_[pair.a] && !changed_[pair.b]) continue;
         times_[i] = infinity;
-        if (!is_settled(pipeline, i)) again_.push_back(i);
+        if (!is_done(pipeline, i)) again_.push_back(i);
     }
     again_times_.assign(again_.size(), infinity);
     find_impacts(pipeline, again_, time, dt, again_times_);

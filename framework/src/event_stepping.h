@@ -6,9 +6,17 @@
 
 namespace kolize {
 
+inline bool is_fixed(const World& world, std::uint32_t body) { return world.is_static[body] || world.removed[body]; }
+
 // Impacts of one step are answered in the order of their times. An impact concerns the bodies that touch at that time
 // and nobody else: all others go on undisturbed, and only pairs with a body whose velocity changed are looked at again.
 // A few fast bodies therefore cost their own impacts and no more.
+//
+// Bodies that rest on each other would meet again as soon as they are let go. Where meetings become too slow to matter
+// (rests()), the response is asked for velocities at which forces that do not change bring the bodies together again
+// no sooner than at the end of the step, and there it stops them: the mean over the time is what a contact force would
+// give (Moreau, "Unilateral contact and dry friction in finite freedom dynamics", 1988), and nothing overlaps on the
+// way.
 class EventStepping : public Stepping {
 public:
     explicit EventStepping(int max_impacts) : max_impacts_(max_impacts) {}
@@ -19,9 +27,11 @@ protected:
     virtual void find_impacts(Pipeline& pipeline, std::span<const std::size_t> candidates, double from, double until,
                               std::span<double> times) = 0;
     // Adds rows of a candidate at the world's present poses; false if there are none. `known`: its impact is due.
-    virtual bool add_contacts(Pipeline& pipeline, std::size_t candidate, bool known) = 0;
-    // Whether bodies that keep meeting are held until the end of the step. Otherwise their pair is left alone.
-    virtual bool holds_bodies() const = 0;
+    // `reach`: see NarrowphaseInput.
+    virtual bool add_contacts(Pipeline& pipeline, std::size_t candidate, bool known, double reach) = 0;
+    // Whether bodies that keep meeting are brought to rest, and held until the end of the step where even that does not
+    // help. Otherwise their pair is left alone.
+    virtual bool keeps_apart() const = 0;
     // After the last impact, with all bodies at the end of the step.
     virtual void finish(Pipeline&, double) {}
 
@@ -31,15 +41,23 @@ private:
     void reserve(std::size_t bodies);
     void find_first_impacts(Pipeline& pipeline, double dt);
     std::size_t next_impact(const Pipeline& pipeline) const;
-    bool is_settled(const Pipeline& pipeline, std::size_t candidate) const;
+    bool is_done(const Pipeline& pipeline, std::size_t candidate) const;
     void look_again(Pipeline& pipeline, double time, double dt);
     void answer(Pipeline& pipeline, std::size_t candidate, double dt);
-    void gather(Pipeline& pipeline, std::size_t candidate, double time);
+    void gather(Pipeline& pipeline, std::size_t candidate, double dt, bool settling);
     void take_bodies(Pipeline& pipeline, std::size_t candidate, double time);
-    bool comes_close(const Pipeline& pipeline, std::size_t candidate, double time) const;
+    bool comes_close(const Pipeline& pipeline, std::size_t candidate, double time, double reach) const;
     void find_changed(Pipeline& pipeline, double time);
     void give_up(Pipeline& pipeline, std::size_t candidate, double time);
     void end_step(Pipeline& pipeline, double dt);
+
+    // In event_stepping_rest.cpp.
+    bool rests(const Pipeline& pipeline, std::size_t candidate, double dt) const;
+    void settle(Pipeline& pipeline, std::size_t candidate, double dt);
+    double reach(const Pipeline& pipeline, std::size_t candidate, double dt, bool settling) const;
+    bool add_resting(Pipeline& pipeline, std::size_t candidate, double reach, double dt);
+    bool is_known_to_rest(const World& world, const Pair& pair) const;
+    double pull(std::span<const std::uint32_t> bodies) const;
 
     int max_impacts_;
     StepFlow flow_;
@@ -48,6 +66,7 @@ private:
     std::vector<std::uint8_t> gathered_;         // by candidate
     std::vector<std::uint32_t> bodies_;          // dynamic ones of the impact at hand
     std::vector<std::uint8_t> is_in_, changed_;  // by body
+    std::vector<std::uint8_t> settled_;          // by body: in this step
     std::vector<std::size_t> again_;             // candidates to look at again
     std::vector<double> again_times_;
 };

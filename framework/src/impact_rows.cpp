@@ -10,7 +10,8 @@ void ImpactRows::build(const ResponseInput& input, const World& world) {
     islands_.clear();
     std::uint32_t island = ImpactRow::fixed;
     for (const Member& member : members_) {
-        const ImpactRow row = make_row(input.contacts[member.contact], world);
+        ImpactRow row = make_row(input.contacts[member.contact], world);
+        row.allowed = input.allowed_approach(*row.contact);
         if (!(row.k > 0)) continue;
         if (member.island != island) islands_.push_back({static_cast<std::uint32_t>(rows_.size()), 0});
         island = member.island;

@@ -17,7 +17,7 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 
 void JointImpulse::reserve(std::size_t rows, std::size_t bodies) {
     change_.reserve(bodies + 1);
-    for (Column* column : {&weight_, &start_, &x_, &gradient_, &free_, &chopped_, &direction_, &image_})
+    for (Column* column : {&weight_, &start_, &allowance_, &x_, &gradient_, &free_, &chopped_, &direction_, &image_})
         column->reserve(rows);
 }
 
@@ -29,21 +29,24 @@ void JointImpulse::solve(const ImpactRows& rows, std::span<const std::uint32_t> 
     }
     apply_k(x_, image_);
     approach_ = dot(x_, start_);
+    allowed_ = dot(x_, allowance_);
     k_ = dot(x_, image_);
 }
 
 void JointImpulse::load(const World& world) {
     const std::size_t count = chosen_.size();
-    for (Column* column : {&weight_, &start_, &x_, &free_, &chopped_, &direction_, &image_}) column->assign(count, 0);
+    for (Column* column : {&weight_, &start_, &allowance_, &x_, &free_, &chopped_, &direction_, &image_})
+        column->assign(count, 0);
     change_.resize(rows_->moving_bodies() + 1);
     scale_ = 0;
     for (std::size_t i = 0; i < count; ++i) {
         weight_[i] = 1 / std::sqrt(row(i).k);
-        start_[i] = row(i).normal_velocity(world) * weight_[i];
+        allowance_[i] = row(i).allowed * weight_[i];
+        start_[i] = row(i).normal_velocity(world) * weight_[i] + allowance_[i];
         scale_ = std::max(scale_, -start_[i]);
     }
     if (scale_ > 0)
-        for (double& speed : start_) speed /= scale_;
+        for (std::size_t i = 0; i < count; ++i) start_[i] /= scale_, allowance_[i] /= scale_;
     gradient_ = start_;
     short_step_ = 1 / static_cast<double>(crowding());
     split_gradient();

@@ -55,6 +55,8 @@ public:
     void moved(const World& world, std::uint32_t body, const BodyState& before, const BodyState& after, double time);
     // After the response: impulses from static bodies, energy that restitution took, depths, which pairs touch.
     void after_response(const World& world, const std::vector<Contact>& contacts, double dissipated_J);
+    // J, of what is done to velocities besides motion and response.
+    void add_work(double work) { exchange_.work += work; }
     // Before body leaves the world.
     void before_removal(const World& world, std::uint32_t body);
     void end_step(const World& world, double dt);

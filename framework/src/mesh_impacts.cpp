@@ -51,7 +51,7 @@ void MeshNarrowphase::find_touching(const NarrowphaseInput& input, Contacts& con
         const std::uint32_t first = swap ? pair.b : pair.a, second = swap ? pair.a : pair.b;
         const MovingPair moving(input.world, still, first, second);
         sweep.points.clear();
-        find_touching_points(moving, moving.at(0), sweep.scratch, sweep.points);
+        find_touching_points(moving, moving.at(0), input.reach, sweep.scratch, sweep.points);
         const Mat3 to_world = input.world.orientation[first].toRotationMatrix();
         const Vec3 offset = input.world.position[second] - input.world.position[first];
         Contact contact;
@@ -63,6 +63,7 @@ void MeshNarrowphase::find_touching(const NarrowphaseInput& input, Contacts& con
                 contact.normal = swap ? Vec3(-normal) : normal;
                 contact.arm_a = swap ? Vec3(arm - offset) : arm;
                 contact.arm_b = swap ? arm : Vec3(arm - offset);
+                contact.depth = touching.gap > 0 ? -touching.gap : 0;
             }
             contacts.rows.push_back(contact);
             ++contact.region;

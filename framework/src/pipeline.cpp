@@ -227,8 +227,8 @@ std::string complaint(const Contact& c, Detail detail, bool touching) {
     if (detail == Detail::overlap) return "";
     if (!(std::abs(c.normal.norm() - 1) < 1e-6))
         return "a normal of length " + std::to_string(c.normal.norm()) + ", not 1";
-    if (!(c.depth > 0) && !(touching && c.depth == 0))
-        return "a depth of " + std::to_string(c.depth) + " m, not above 0";
+    if (touching != (c.depth <= 0))
+        return "a depth of " + std::to_string(c.depth) + " m, which is " + (touching ? "above" : "not above") + " 0";
     return "";
 }
 
@@ -263,7 +263,7 @@ void Pipeline::find_contacts() {
     measure.triangle_tests += contacts.triangle_tests;
 }
 
-void Pipeline::respond(double dt) {
+void Pipeline::respond(double dt, double settle) {
     const std::size_t first_event = events.size();
     for (Rule& rule : rules) {
         rule.contacts.clear();
@@ -280,20 +280,20 @@ void Pipeline::respond(double dt) {
         rule.hit.push_back(hit_bits(rule.kinds, world.kinds[world.kind[c.a]], world.kinds[world.kind[c.b]]));
     }
     for (Rule& rule : rules)
-        if (!rule.contacts.empty()) respond_with(rule, dt);
+        if (!rule.contacts.empty()) respond_with(rule, dt, settle);
     measure.events += events.size() - first_event;
     remove_bodies();
 }
 
-void Pipeline::respond_with(Rule& rule, double dt) {
+void Pipeline::respond_with(Rule& rule, double dt, double settle) {
     const char* const plugin = rule.plugin->descriptor->name;
     const std::size_t first_event = events.size();
     ResponseOutput output{events};
-    if (ledger) ledger->check_depths(rule.contacts, narrowphase_plugin->descriptor->name);
+    if (ledger && settle == 0) ledger->check_depths(rule.contacts, narrowphase_plugin->descriptor->name);
     run_stage(
         StageKind::response, plugin,
         [&] {
-            rule.stage->respond({rule.contacts, rule.hit, dt}, world, output);
+            rule.stage->respond({rule.contacts, rule.hit, dt, settle}, world, output);
         },
         [&] { return blamed_pair(rule, dt); });
     require_finite_response(rule, output.dissipated_J, first_event);
@@ -301,6 +301,8 @@ void Pipeline::respond_with(Rule& rule, double dt) {
     for (std::size_t i = 0; i < rule.contacts.size(); ++i)
         contacts.rows[rule.rows[i]].impulse = rule.contacts[i].impulse;
     measure.unresolved += output.unresolved;
+    for (Contact& c : rule.contacts)
+        if (settle > 0) c.depth = 0;  // it was no depth: nothing overlaps
     measure.after_response(world, rule.contacts, output.dissipated_J);
 }
 
@@ -326,13 +328,13 @@ void Pipeline::find_impacts(std::span<const Pair> some_pairs, const Flow& flow, 
     require_times(some_pairs, from, times);
 }
 
-bool Pipeline::add_contacts(std::size_t candidate, bool touching) {
+bool Pipeline::add_contacts(std::size_t candidate, bool touching, double reach) {
     const Pair& pair = routed_[candidate];
     one_pair_.clear();
     run_stage(
         StageKind::narrowphase, narrowphase_plugin->descriptor->name,
         [&] {
-            const NarrowphaseInput input{world, {&pair, 1}, {&detail_[candidate], 1}};
+            const NarrowphaseInput input{world, {&pair, 1}, {&detail_[candidate], 1}, reach};
             if (touching)
                 narrowphase->find_touching(input, one_pair_);
             else

@@ -27,8 +27,8 @@ public:
     void integrate(double dt);
     // Pairs and contacts of the present poses. Measures nothing but time: a stepping may look as often as it likes.
     void detect();
-    // Hands the contacts to their rules and takes removed bodies out.
-    void respond(double dt);
+    // Hands the contacts to their rules and takes removed bodies out. `settle`: see ResponseInput.
+    void respond(double dt, double settle = 0);
 
     // Contacts whose bodies approach each other at the contact point.
     bool approaching() const;
@@ -43,9 +43,12 @@ public:
     // times[i] for pairs[i]: see Narrowphase::find_impacts.
     void find_impacts(std::span<const Pair> some_pairs, const Flow& flow, double from, double until,
                       std::span<double> times);
-    // Appends a candidate's rows to `contacts`, at the world's present poses; false if there are none. `touching`: see
-    // Narrowphase::find_touching.
-    bool add_contacts(std::size_t candidate, bool touching);
+    // Appends a candidate's rows to `contacts`, at the world's present poses; false if there are none. `touching` and
+    // `reach`: see Narrowphase::find_touching.
+    bool add_contacts(std::size_t candidate, bool touching, double reach = 0);
+    // Gives bodies the velocity that the forces which do not change would give them in `time` seconds; below 0 it is
+    // taken back.
+    void kick(std::span<const std::uint32_t> bodies, const Flow& flow, double time);
     // Puts rows that were added one pair at a time into canonical order.
     void sort_contacts();
     bool is_detailed(std::size_t candidate) const { return detail_[candidate] != Detail::overlap; }
@@ -53,6 +56,7 @@ public:
     // Throws where the motion leads to something that is not finite.
     void moved(std::uint32_t body, const BodyState& before, const BodyState& after, double time);
     const Integrator& integrator() const { return *integrator_; }
+    [[noreturn]] void refuse_motion(const std::string& what) const;
 
     // Poses and velocities, kept in buffers that are allocated once.
     void save();
@@ -94,7 +98,7 @@ private:
     bool route(const Pair& pair);
     void require_fit(const Contact& contact, const Pair& asked, Detail detail, bool touching) const;
     void find_contacts();
-    void respond_with(Rule& rule, double dt);
+    void respond_with(Rule& rule, double dt, double settle);
     void remove_bodies();
 
     // In pipeline_checks.cpp: nothing that is not a number leaves the stage that made it.

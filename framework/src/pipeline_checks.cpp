@@ -55,6 +55,8 @@ void Pipeline::refuse_path(std::uint32_t body, const BodyState& end) const {
          "the way of body " + body_text(world, body) + " in one step is longer than can be computed with");
 }
 
+void Pipeline::refuse_motion(const std::string& what) const { fail("integrator", integrator_name_, what); }
+
 void Pipeline::require_finite_response(const Rule& rule, double dissipated_J, std::size_t first_event) const {
     const auto refuse = [&](const std::string& what) { fail("response", rule.plugin->descriptor->name, what); };
     for (const Contact& c : rule.contacts) {

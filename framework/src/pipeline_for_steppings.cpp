@@ -68,6 +68,14 @@ void Pipeline::add_candidates_of(std::uint32_t body, const Flow& flow, double fr
         if (reaches_behind(bounds_[own], wall)) add(wall);
 }
 
+void Pipeline::kick(std::span<const std::uint32_t> bodies, const Flow& flow, double time) {
+    for (const std::uint32_t body : bodies) {
+        const double before = world.kinetic_energy(body);
+        world.velocity[body] += time * flow.bound(body).acceleration;
+        measure.add_work(world.kinetic_energy(body) - before);
+    }
+}
+
 // By insertion: stable without a buffer, and the rows are few.
 void Pipeline::sort_contacts() {
     const auto before = [](const Contact& x, const Contact& y) { return Pair{x.a, x.b} < Pair{y.a, y.b}; };

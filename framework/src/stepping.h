@@ -19,7 +19,7 @@ public:
 //            time by halving, to tolerance * dt, and the pair goes on from there. What overlaps only in between is
 //            missed.
 // continuous the same with times of impact from the narrowphase's sweep: nothing is missed, at any speed or spin, and
-//            nothing overlaps. A pair that meets more than max_impacts times in a step is held until its end.
+//            nothing overlaps. Bodies that lie on each other are at rest: see event_stepping.h.
 // Throws std::invalid_argument for another mode.
 std::unique_ptr<Stepping> make_stepping(const StepConfig& config);
 

@@ -88,7 +88,14 @@ public:
     void respond(const ResponseInput& input, World& world, ResponseOutput& output) override {
         if (reserved_ < world.size()) reserve(world.size());
         rows_.build(input, world);
-        for (const ImpactRows::Island& island : rows_.islands()) resolve({island, world, output});
+        for (const ImpactRows::Island& island : rows_.islands()) {
+            Task task = begin(island, world, output);
+            if (input.settle > 0)
+                bring_to_rest(task);
+            else
+                bounce(task);
+            task.output.unresolved += find_approaching(task);
+        }
     }
 
 private:
@@ -110,7 +117,8 @@ private:
         joint_.reserve(32 * world_size, world_size);
     }
 
-    void resolve(Task task) {
+    Task begin(const ImpactRows::Island& island, World& world, ResponseOutput& output) const {
+        Task task{island, world, output};
         double scale = 0, liveliest = 0;
         for (const ImpactRow& row : rows(task)) {
             scale = std::max(scale, row.speed_scale(task.world));
@@ -119,10 +127,16 @@ private:
         }
         task.limit = -relative_tolerance * scale;
         task.impulses_left = bounces(liveliest) * rows(task).size();
+        return task;
+    }
+
+    void bounce(Task& task) {
         order_ == "symmetric" ? reflect_together(task) : reflect_in_turn(task);
-        if (task.impulses_left > 0) return;
-        for (int i = 0; i < most_stops && !task.elastic && find_approaching(task) > 0; ++i) stop(task);
-        task.output.unresolved += find_approaching(task);
+        if (task.impulses_left == 0 && !task.elastic) bring_to_rest(task);
+    }
+
+    void bring_to_rest(Task& task) {
+        for (int i = 0; i < most_stops && find_approaching(task) > 0; ++i) stop(task);
     }
 
     std::span<const ImpactRow> rows(const Task& task) const {
@@ -186,7 +200,8 @@ private:
     std::size_t find_approaching(const Task& task) {
         chosen_.clear();
         for (std::uint32_t i = task.island.begin; i < task.island.end; ++i)
-            if (rows_.rows()[i].normal_velocity(task.world) < task.limit) chosen_.push_back(i);
+            if (rows_.rows()[i].normal_velocity(task.world) + rows_.rows()[i].allowed < task.limit)
+                chosen_.push_back(i);
         return chosen_.size();
     }
 

@@ -17,21 +17,20 @@ using namespace kolize;
 
 constexpr double relative_tolerance = 1e-12;  // approach below this share of the speeds at hand is rounding
 
-bool is_approaching(const Contact& c, const World& world) {
-    const double speed = c.normal.dot(world.velocity[c.b] - world.velocity[c.a]);
+bool is_approaching(const Contact& c, double allowed, const World& world) {
+    const double speed = allowed + c.normal.dot(world.velocity[c.b] - world.velocity[c.a]);
     return speed < -relative_tolerance * (world.velocity[c.a].norm() + world.velocity[c.b].norm());
 }
 
-// Returns the kinetic energy lost, J.
-double bounce(Contact& c, World& world) {
+// Leaves the approach that is allowed, and of the rest what restitution sends back. Returns the kinetic energy lost, J.
+double bounce(Contact& c, double restitution, double allowed, World& world) {
     const double speed = c.normal.dot(world.velocity[c.b] - world.velocity[c.a]);
     const double k = (world.inverse_mass[c.a] + world.inverse_mass[c.b]) * c.normal.squaredNorm();
-    const double restitution = world.restitution(c.a, c.b);
-    const double impulse = -(1 + restitution) * speed / k;
+    const double impulse = -((1 + restitution) * speed + allowed) / k;
     world.velocity[c.a] -= impulse * world.inverse_mass[c.a] * c.normal;
     world.velocity[c.b] += impulse * world.inverse_mass[c.b] * c.normal;
     c.impulse += impulse;
-    return (1 - restitution * restitution) * speed * speed / (2 * k);
+    return (1 - restitution * restitution) * speed * speed / (2 * k) - allowed * allowed / (2 * k);
 }
 
 class SimpleBounce final : public Response {
@@ -48,13 +47,16 @@ public:
         for (int pass = 0; changed && pass < max_passes_; ++pass) {
             changed = false;
             for (Contact& c : input.contacts) {
-                if (!is_approaching(c, world)) continue;
-                output.dissipated_J += bounce(c, world);
+                const double allowed = input.allowed_approach(c);
+                if (!is_approaching(c, allowed, world)) continue;
+                const double restitution = input.settle > 0 ? 0 : world.restitution(c.a, c.b);
+                output.dissipated_J += bounce(c, restitution, allowed, world);
                 changed = true;
             }
         }
         if (!changed) return;
-        for (const Contact& c : input.contacts) output.unresolved += is_approaching(c, world);
+        for (const Contact& c : input.contacts)
+            output.unresolved += is_approaching(c, input.allowed_approach(c), world);
     }
 
 private:

@@ -1,4 +1,5 @@
 // When bodies in motion meet: Narrowphase::find_impacts, with flows whose motion is known in closed form.
+#include "conformance/steady_flow.h"
 #include "framework/solids.h"
 #include "narrowphase/solids.h"
 #include "narrowphase/two_bodies.h"
@@ -13,29 +14,6 @@ using namespace kolize::test;
 namespace {
 
 constexpr double h = 1.0 / 60;
-
-// Constant velocities and angular velocities.
-class SteadyFlow final : public Flow {
-public:
-    explicit SteadyFlow(const World& world) : world_(world) {}
-
-    BodyState at(std::uint32_t body, double time) const override {
-        BodyState state = world_.state(body);
-        state.position += time * state.velocity;
-        const double angle = state.angular_velocity.norm() * time;
-        if (angle != 0)
-            state.orientation = Quat(Eigen::AngleAxisd(angle, state.angular_velocity.normalized())) * state.orientation;
-        return state;
-    }
-    MotionBound bound(std::uint32_t body) const override {
-        MotionBound bound;
-        bound.angular_speed = world_.angular_velocity[body].norm();
-        return bound;
-    }
-
-private:
-    const World& world_;
-};
 
 // What one narrowphase says about bodies 0 and 1 of a world that move steadily.
 class Sweep {

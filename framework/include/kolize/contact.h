@@ -27,8 +27,10 @@ struct Contact {
     Vec3 normal = Vec3::Zero();  // unit, world axes, from body A to body B: B has to move along it to separate
     Vec3 arm_a = Vec3::Zero();   // contact point minus the centre of mass of A, world axes, m
     Vec3 arm_b = Vec3::Zero();   // the same point minus the centre of mass of B, world axes, m
-    double depth = 0;    // m, > 0: longest chord of the overlap along the normal (of two convex primitives: how far
-                         // B has to move along it to separate); 0 where bodies touch at the time of impact
+    // m, > 0 where bodies overlap. Detail `normal`: the longest chord of the region along its normal (of two convex
+    // primitives: how far B has to move along it to separate). `manifold`: the chord at this point. 0 where bodies touch
+    // at the time of impact. Of bodies that rest on each other see ResponseInput::settle.
+    double depth = 0;
     double impulse = 0;  // written by the response: normal impulse on B, N s, >= 0
 };
 

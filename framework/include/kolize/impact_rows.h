@@ -26,6 +26,7 @@ struct ImpactRow {
     double inverse_mass_b = 0;
     double k = 0;            // normal velocity per unit impulse, 1/kg; > 0
     double restitution = 1;  // of the two materials
+    double allowed = 0;      // approach that the contact may keep, m/s: see ResponseInput::allowed_approach
 
     bool moves(std::uint32_t body) const { return body == moving_a || body == moving_b; }
     // J u, m/s.

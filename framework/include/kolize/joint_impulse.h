@@ -11,7 +11,7 @@ namespace kolize {
 // Of some rows: the impulses p >= 0 after which none of the rows approaches and those that part have p = 0. That is,
 // the velocities u + M^-1 J^T p are the nearest to u, in the metric of kinetic energy, that have J u >= 0: Moreau,
 // "Unilateral contact and dry friction in finite freedom dynamics", 1988. The velocities are unique; the impulses are
-// where the rows are independent. Found by conjugate gradients among the rows that push: Dostal, Schoeberl, "Minimizing
+// where the rows are independent. A row that is allowed some approach counts as if it had that much less. Found by conjugate gradients among the rows that push: Dostal, Schoeberl, "Minimizing
 // quadratic functions subject to bound constraints with the rate of convergence and finite termination",
 // Computational Optimization and Applications 30, 2005. A step of it costs a few dozen operations a row.
 //
@@ -30,7 +30,7 @@ public:
     // The impulses times factor() take the most kinetic energy away, energy() in J; times 2 factor() none. It is 1
     // unless the search was cut short; 0 or not a number where nothing approaches.
     double factor() const { return -approach_ / k_; }
-    double energy() const { return scale_ * (scale_ * (approach_ * approach_ / (2 * k_))); }
+    double energy() const { return scale_ * (scale_ * (approach_ * approach_ / (2 * k_) + factor() * allowed_)); }
 
 private:
     struct Change {  // of a body's velocities
@@ -57,7 +57,8 @@ private:
     std::vector<Change> change_;  // M^-1 J^T of something, per moving body; the last one is that of all static bodies
     // Rows are scaled to k = 1, and velocities so that the fastest approach is 1.
     Column weight_;          // 1 / sqrt(k)
-    Column start_;           // J u before
+    Column start_;           // J u before, plus what is allowed
+    Column allowance_;       // what is allowed
     Column x_;               // impulse
     Column gradient_;        // J u after the impulses
     Column free_;            // gradient where x > 0
@@ -66,8 +67,9 @@ private:
     Column image_;           // K direction
     double scale_ = 0;       // of the velocities, sqrt(J)
     double short_step_ = 0;  // along the gradient, overshoots nothing
-    double approach_ = 0;
-    double k_ = 0;
+    double approach_ = 0;    // x . start
+    double allowed_ = 0;     // x . what is allowed
+    double k_ = 0;           // x . K x
 };
 
 }  // namespace kolize

@@ -10,6 +10,7 @@ struct NarrowphaseInput {
     const World& world;
     std::span<const Pair> pairs;     // body ids, a < b, sorted, no duplicates, never two static bodies
     std::span<const Detail> detail;  // what to find out about each pair; same length as pairs
+    double reach = 0;                // m, for find_touching
 };
 
 struct ImpactInput {
@@ -44,7 +45,8 @@ public:
     // overlap between input.from and then; infinity if there is none until input.until. Never late: nothing is missed.
     virtual void find_impacts(const ImpactInput& input, std::span<double> times);
     // Contacts of pairs that stand within four times touch_distance without overlapping, at the world's present poses,
-    // depth 0. Appends rows in canonical order, each point a region of its own.
+    // depth 0; and points whose gap is no wider than input.reach, with depth = -gap (or nearer than that). Appends rows
+    // in canonical order, each point a region of its own.
     virtual void find_touching(const NarrowphaseInput& input, Contacts& contacts);
 };
 

@@ -16,7 +16,7 @@
 
 namespace kolize {
 
-inline constexpr std::uint32_t plugin_api = 2;  // raised when a stage contract changes
+inline constexpr std::uint32_t plugin_api = 3;  // raised when a stage contract changes
 
 constexpr std::uint64_t layout_hash();
 

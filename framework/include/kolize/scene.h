@@ -34,7 +34,7 @@ struct StepConfig {
     std::string integrator = "pdmv4";
     double tolerance = 1e-3;  // bisection: the impact time is found to this share of dt
     int max_impacts = 64;  // bisection, continuous: impacts of one pair in one step; then a bisection leaves the pair
-                           // alone until the step ends, and continuous stepping holds its bodies where they are
+                           // alone until the step ends, and continuous stepping brings its bodies to rest
     double time = 10;      // s; how long `kolize run` goes on when not told
     SourceLocation where = {};  // of the mode
 };

@@ -84,7 +84,7 @@ struct KOLIZE_API World {
     Vec3 model_position(std::uint32_t body) const;
     Quat model_orientation(std::uint32_t body) const;
 
-    // R diag(inverse_inertia) R^T: the one and only world-frame inverse inertia.
+    // R diag(inverse_inertia) R^T.
     Mat3 world_inverse_inertia(std::uint32_t body) const;
     Vec3 angular_momentum(std::uint32_t body) const;  // about the body's centre of mass, kg m^2/s; 0 if static
     double kinetic_energy(std::uint32_t body) const;  // J; 0 if static

@@ -1,5 +1,6 @@
 #include "conformance/impact_times.h"
 
+#include "conformance/steady_flow.h"
 #include "conformance/two_solids.h"
 
 #include <kolize/simulation.h>
@@ -16,29 +17,6 @@ constexpr double until = 0.5;  // s
     throw Violation(what + ": " + to_text(world) + ", velocities " + std::to_string(world.velocity[0].norm()) +
                     " and " + std::to_string(world.velocity[1].norm()) + " m/s");
 }
-
-// Constant velocities and angular velocities: known in closed form at any time.
-class SteadyFlow final : public Flow {
-public:
-    explicit SteadyFlow(const World& world) : world_(world) {}
-
-    BodyState at(std::uint32_t body, double time) const override {
-        BodyState state = world_.state(body);
-        state.position += time * state.velocity;
-        const double angle = state.angular_velocity.norm() * time;
-        if (angle != 0)
-            state.orientation = Quat(Eigen::AngleAxisd(angle, state.angular_velocity.normalized())) * state.orientation;
-        return state;
-    }
-    MotionBound bound(std::uint32_t body) const override {
-        MotionBound bound;
-        bound.angular_speed = world_.angular_velocity[body].norm();
-        return bound;
-    }
-
-private:
-    const World& world_;
-};
 
 World moved_to(const World& world, double time) {
     const SteadyFlow flow(world);

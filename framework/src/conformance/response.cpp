@@ -178,6 +178,36 @@ public:
         });
     }
 
+    // Whatever the restitution, the answer is that of restitution 0.
+    void settling_bodies_do_not_bounce() const {
+        for (std::uint64_t seed = options_.seed; seed < options_.seed + 10; ++seed) {
+            const ImpactScene scene = settling(5, 0.7, seed, 0);
+            const Answer answer = respond(scene, 0.01);
+            const World expected = respond(settling(5, 0, seed, 0)).scene.world;
+            for (std::uint32_t i = 0; i < expected.size(); ++i)
+                if (!close(answer.scene.world, i, expected.velocity[i], expected.angular_velocity[i]))
+                    violate("body " + std::to_string(i) + " moves otherwise than with restitution 0", scene);
+            const double lost = kinetic_energy(scene.world) - kinetic_energy(answer.scene.world);
+            if (!(std::abs(lost - answer.dissipated_J) <= 1e-11 * kinetic_energy(scene.world)))
+                violate("lost " + std::to_string(lost) + " J, reported " + std::to_string(answer.dissipated_J), scene);
+        }
+    }
+
+    // A gap that nothing closes in time is left alone; and one that has to open does.
+    void settling_bodies_keep_their_gaps() const {
+        for (std::uint64_t seed = options_.seed; seed < options_.seed + 10; ++seed) {
+            const ImpactScene wide = settling(5, 1, seed, -1e3);
+            if (removals(respond(wide)).empty())
+                expect_same(respond(wide, 0.01).scene.world, wide.world, "with wide gaps", wide);
+            const ImpactScene one = settling(1, 1, seed, 1e-3);
+            const Answer parted = respond(one, 0.01);
+            if (!(parted.scene.contacts[0].impulse > 0)) continue;
+            const double speed = normal_velocity(parted.scene.world, parted.scene.contacts[0]);
+            if (!(std::abs(speed - 0.1) <= 1e-12 * (1 + kinetic_energy(one.world))))
+                violate("the contact parts at " + std::to_string(speed) + " m/s, not at 0.1", one);
+        }
+    }
+
     // Bodies at rest, coincident centres, and masses and speeds thirty decades apart.
     void finite_stays_finite() const {
         for (const double scale : {0.0, 1e-150, 1e-15, 1e15, 1e100}) {
@@ -222,6 +252,20 @@ private:
         return random_impacts(count, plugin_.descriptor->capabilities.uses, restitution, seed);
     }
 
+    // With this for the depth of all contacts.
+    ImpactScene settling(std::size_t count, double restitution, std::uint64_t seed, double depth) const {
+        ImpactScene scene = impacts(count, restitution, seed);
+        for (Contact& c : scene.contacts) c.depth = depth;
+        return scene;
+    }
+
+    // As far as the plugin models it: without rotation where bodies count as spheres.
+    double normal_velocity(const World& world, const Contact& c) const {
+        if (plugin_.descriptor->capabilities.bounding_spheres)
+            return c.normal.dot(world.velocity[c.b] - world.velocity[c.a]);
+        return c.normal.dot(world.velocity_at(c.b, c.arm_b) - world.velocity_at(c.a, c.arm_a));
+    }
+
     // The body's velocities, to rounding.
     static bool close(const World& world, std::uint32_t body, const Vec3& velocity, const Vec3& angular_velocity) {
         return (world.velocity[body] - velocity).norm() <= 1e-12 * (1 + velocity.norm()) &&
@@ -237,18 +281,18 @@ private:
         return bodies;
     }
 
-    static Answer respond(Response& stage, const ImpactScene& scene) {
+    static Answer respond(Response& stage, const ImpactScene& scene, double settle = 0) {
         Answer answer{scene, {}, 0, 0};
         ResponseOutput output{answer.events};
-        stage.respond({answer.scene.contacts, answer.scene.hit, 0.01}, answer.scene.world, output);
+        stage.respond({answer.scene.contacts, answer.scene.hit, 0.01, settle}, answer.scene.world, output);
         answer.dissipated_J = output.dissipated_J;
         answer.unresolved = output.unresolved;
         return answer;
     }
 
-    Answer respond(const ImpactScene& scene) const {
+    Answer respond(const ImpactScene& scene, double settle = 0) const {
         const auto host = make_host(1);
-        return respond(*make(*host), scene);
+        return respond(*make(*host), scene, settle);
     }
 
     template <class CheckScene>
@@ -278,6 +322,8 @@ std::vector<Check> check_response(const PluginLibrary& library, const LoadedPlug
     suite.run("the whole moved far away, same bits", [&] { checks.moved_far_away(); });
     suite.run("bodies renumbered", [&] { checks.bodies_renumbered(); });
     suite.run("events are of touching bodies", [&] { checks.events_are_of_touching_bodies(); });
+    suite.run("bodies that settle do not bounce", [&] { checks.settling_bodies_do_not_bounce(); });
+    suite.run("bodies that settle keep their gaps", [&] { checks.settling_bodies_keep_their_gaps(); });
     suite.run("finite input, finite output", [&] { checks.finite_stays_finite(); });
     suite.run("warm calls allocate nothing", [&] { checks.warm_calls_allocate_nothing(); });
     return suite.take();

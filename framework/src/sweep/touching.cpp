@@ -25,9 +25,8 @@ Support support(const ConvexFeature& feature, const Vec3& outward, double depth)
 
 class TouchingSearch {
 public:
-    TouchingSearch(const MovingPair& pair, const PairMoment& moment, std::vector<TouchingPoint>& points)
-        : pair_(pair), moment_(moment), points_(points), first_(points.size()) {
-        reach_ = 4 * pair.touch;
+    TouchingSearch(const MovingPair& pair, const PairMoment& moment, double reach, std::vector<TouchingPoint>& points)
+        : pair_(pair), moment_(moment), points_(points), first_(points.size()), reach_(reach) {
         near_ = same_place * (pair.a.reach + pair.b.reach + pair.radii);
     }
 
@@ -37,28 +36,38 @@ public:
         if (!(width > -pair_.touch && width <= reach_)) return;
         normal_ = gap.normal;
         if (fa.count == 1 || (!pair_.b.is_plane() && fb.count == 1)) {
-            add(gap.on_a + (pair_.a.radius + 0.5 * width) * normal_);
+            add(gap.on_a + (pair_.a.radius + 0.5 * width) * normal_, width);
             return;
         }
         const Support a = support(fa, normal_, reach_);
+        surface_a_ = -infinity;
+        for (int i = 0; i < fa.count; ++i) surface_a_ = std::max(surface_a_, normal_.dot(fa.corners[i]));
+        surface_b_ = surface_a_ + width;
         if (pair_.b.is_plane() || a.count == 1) {
-            for (int i = 0; i < a.count; ++i) add(a.points[i]);
+            for (int i = 0; i < a.count; ++i) add_corner_of_a(a.points[i]);
             return;
         }
         const Support b = support(fb, -normal_, reach_);
         if (b.count == 1)
-            add(b.points[0]);
+            add_corner_of_b(b.points[0]);
         else if (!add_shared_area(a, b))
-            add(0.5 * (gap.on_a + gap.on_b));
+            add(0.5 * (gap.on_a + gap.on_b), width);
     }
 
 private:
-    void add(const Vec3& point) {
+    void add(const Vec3& point, double width) {
+        if (!(width <= reach_)) return;
+        const double gap = width <= 4 * pair_.touch ? 0 : width;
         for (std::size_t i = first_; i < points_.size(); ++i)
-            if ((points_[i].point - point).norm() <= near_ && (points_[i].normal - normal_).norm() <= same_place)
+            if ((points_[i].point - point).norm() <= near_ && (points_[i].normal - normal_).norm() <= same_place) {
+                points_[i].gap = std::min(points_[i].gap, gap);
                 return;
-        points_.push_back({point, normal_});
+            }
+        points_.push_back({point, normal_, gap});
     }
+    // The other surface is no nearer than its foremost point.
+    void add_corner_of_a(const Vec3& point) { add(point, surface_b_ - normal_.dot(point)); }
+    void add_corner_of_b(const Vec3& point) { add(point, normal_.dot(point) - surface_a_); }
 
     // Signed area of (p, q, r) in the view along the normal, times two.
     double turn(const Vec3& p, const Vec3& q, const Vec3& r) const { return normal_.dot((q - p).cross(r - p)); }
@@ -83,9 +92,9 @@ private:
     bool add_shared_area(const Support& a, const Support& b) {
         bool any = false;
         for (int i = 0; i < a.count; ++i)
-            if (covers(b, a.points[i])) any = true, add(a.points[i]);
+            if (covers(b, a.points[i])) any = true, add_corner_of_a(a.points[i]);
         for (int j = 0; j < b.count; ++j)
-            if (covers(a, b.points[j])) any = true, add(b.points[j]);
+            if (covers(a, b.points[j])) any = true, add_corner_of_b(b.points[j]);
         for (int i = 0; i < (a.count == 2 ? 1 : 3); ++i)
             for (int j = 0; j < (b.count == 2 ? 1 : 3); ++j)
                 if (add_crossing(a.points[i], a.points[(i + 1) % a.count], b.points[j], b.points[(j + 1) % b.count]))
@@ -97,7 +106,7 @@ private:
         const double at_p = turn(r, s, p), at_q = turn(r, s, q), at_r = turn(p, q, r), at_s = turn(p, q, s);
         const bool across = (at_p > 0) != (at_q > 0) && (at_r > 0) != (at_s > 0);
         if (!across || at_p == at_q) return false;
-        add(p + (at_p / (at_p - at_q)) * (q - p));
+        add(p + (at_p / (at_p - at_q)) * (q - p), surface_b_ - surface_a_);
         return true;
     }
 
@@ -107,14 +116,16 @@ private:
     std::size_t first_;
     double reach_, near_;
     Vec3 normal_ = Vec3::Zero();
+    double surface_a_ = 0, surface_b_ = 0;  // along the normal: the foremost points of the two features at hand
 };
 
 }  // namespace
 
-void find_touching_points(const MovingPair& pair, const PairMoment& moment, ImpactScratch& scratch,
+void find_touching_points(const MovingPair& pair, const PairMoment& moment, double reach, ImpactScratch& scratch,
                           std::vector<TouchingPoint>& points) {
-    TouchingSearch search(pair, moment, points);
-    visit_near(pair, moment, 4 * pair.touch, 0, scratch, [&](std::uint32_t a, std::uint32_t b) {
+    reach = std::max(reach, 4 * pair.touch);
+    TouchingSearch search(pair, moment, reach, points);
+    visit_near(pair, moment, reach, 0, scratch, [&](std::uint32_t a, std::uint32_t b) {
         ConvexFeature fb;
         if (!pair.b.is_plane()) fb = pair.b.feature(b);
         for (Vec3& corner : fb.corners) corner = moment.b_to_a * corner;
