@@ -41,7 +41,9 @@ void EventStepping::reserve(std::size_t bodies) {
     gathered_.reserve(usual_pairs);
     again_.reserve(usual_pairs);
     again_times_.reserve(usual_pairs);
+    meetings_.reserve(usual_pairs);
     bodies_.reserve(bodies);
+    before_.reserve(bodies);
 }
 
 void EventStepping::find_first_impacts(Pipeline& pipeline, double dt) {
@@ -54,6 +56,7 @@ void EventStepping::find_first_impacts(Pipeline& pipeline, double dt) {
     times_.assign(again_.size(), infinity);
     impacts_.assign(again_.size(), 0);
     settled_.assign(pipeline.world.size(), 0);
+    meetings_.clear();
     find_impacts(pipeline, again_, 0, dt, times_);
 }
 
@@ -74,11 +77,12 @@ void EventStepping::answer(Pipeline& pipeline, std::size_t candidate, double dt)
     gather(pipeline, candidate, dt, false);
     const bool at_rest = rests(pipeline, candidate, dt);
     if (at_rest) {
+        gather(pipeline, candidate, dt, true);
         settle(pipeline, candidate, dt);
     } else {
-        for (Contact& c : pipeline.contacts.rows)
-            c.depth = std::max(c.depth, 0.0);  // what lies on something touches it
+        for (Contact& c : pipeline.contacts.rows) c.depth = std::max(c.depth, 0.0);  // what lies on something touches
         pipeline.respond(dt);
+        if (leaves_at_rest(pipeline)) settle(pipeline, candidate, dt);
     }
     find_changed(pipeline, time);
     if (bodies_.empty() || impacts_[candidate] > (at_rest ? 2 : 1) * max_impacts_) give_up(pipeline, candidate, time);
@@ -92,7 +96,7 @@ void EventStepping::gather(Pipeline& pipeline, std::size_t candidate, double dt,
     const double time = times_[candidate];
     const auto add = [&](std::size_t some, bool known) {
         const double gap = reach(pipeline, some, dt, settling);
-        return gap > 0 ? add_resting(pipeline, some, gap, dt) : add_contacts(pipeline, some, known, 0);
+        return gap > 0 ? add_resting(pipeline, some, known, gap, dt) : add_contacts(pipeline, some, known, 0);
     };
     pipeline.contacts.clear();
     bodies_.clear();

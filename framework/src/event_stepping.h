@@ -38,6 +38,14 @@ protected:
     const StepFlow& flow() const { return flow_; }
 
 private:
+    // Bodies that were let go in this step, and how.
+    struct Meeting {
+        Pair pair;
+        double since = 0;    // s, in this step
+        double length = 0;   // s, after which they were to meet again
+        double closing = 0;  // m/s^2, by which they close besides what pulls them
+    };
+
     void reserve(std::size_t bodies);
     void find_first_impacts(Pipeline& pipeline, double dt);
     std::size_t next_impact(const Pipeline& pipeline) const;
@@ -53,9 +61,17 @@ private:
 
     // In event_stepping_rest.cpp.
     bool rests(const Pipeline& pipeline, std::size_t candidate, double dt) const;
+    bool leaves_at_rest(const Pipeline& pipeline) const;
     void settle(Pipeline& pipeline, std::size_t candidate, double dt);
     double reach(const Pipeline& pipeline, std::size_t candidate, double dt, bool settling) const;
-    bool add_resting(Pipeline& pipeline, std::size_t candidate, double reach, double dt);
+    bool add_resting(Pipeline& pipeline, std::size_t candidate, bool known, double reach, double dt);
+    void let_go(Pipeline& pipeline, double kick, double length, double dt);
+    double gained_energy(const World& world) const;
+    double energy_to_spare(const World& world, double change) const;
+    void measure_closing(const Pipeline& pipeline, std::size_t candidate);
+    Meeting& meeting_of(const Pair& pair);
+    double fastest_closing(const World& world, const Pair& pair) const;
+    double path_error(const World& world, const Pair& pair) const;
     bool is_known_to_rest(const World& world, const Pair& pair) const;
     double pull(std::span<const std::uint32_t> bodies) const;
 
@@ -65,8 +81,10 @@ private:
     std::vector<int> impacts_;                   // by candidate, in this step
     std::vector<std::uint8_t> gathered_;         // by candidate
     std::vector<std::uint32_t> bodies_;          // dynamic ones of the impact at hand
+    std::vector<BodyState> before_;              // of bodies_, before they were let go
     std::vector<std::uint8_t> is_in_, changed_;  // by body
     std::vector<std::uint8_t> settled_;          // by body: in this step
+    std::vector<Meeting> meetings_;              // sorted by pair
     std::vector<std::size_t> again_;             // candidates to look at again
     std::vector<double> again_times_;
 };

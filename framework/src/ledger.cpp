@@ -115,13 +115,13 @@ void Ledger::check_depths(std::span<const Contact> contacts, const char* narrowp
             record("narrowphase", narrowphase, {c.a, c.b}, "penetration", "m", depth);
 }
 
-void Ledger::after_response(const World& world, std::span<const Contact> contacts, double dissipated_J,
+void Ledger::after_response(const World& world, std::span<const Contact> contacts, double dissipated_J, bool settling,
                             const char* plugin) {
     if (break_) return;
     check_untouched(world, "response", plugin);
     book(world, contacts);
     check_rest(world, plugin);
-    check_energy(world, contacts, dissipated_J, plugin);
+    check_energy(world, contacts, dissipated_J, settling, plugin);
     for (const std::uint32_t body : involved_) check_momenta(world, contacts, body, plugin);
 }
 
@@ -211,7 +211,7 @@ void Ledger::check_momenta(const World& world, std::span<const Contact> contacts
 
 // The sum over all bodies has to fit what the response reports; the pair is looked for among the linked bodies whose
 // energy changed most.
-void Ledger::check_energy(const World& world, std::span<const Contact> contacts, double dissipated_J,
+void Ledger::check_energy(const World& world, std::span<const Contact> contacts, double dissipated_J, bool settling,
                           const char* plugin) {
     double change = 0, limit = 0;
     for (const std::uint32_t body : involved_) {
@@ -222,7 +222,7 @@ void Ledger::check_energy(const World& world, std::span<const Contact> contacts,
                  energy_rounding(world, body, after);
         received_[root(body)].gained_J += last - first;
     }
-    const Balance negative{std::min(dissipated_J, 0.0), limit}, total{change + dissipated_J, limit};
+    const Balance negative{settling ? 0 : std::min(dissipated_J, 0.0), limit}, total{change + dissipated_J, limit};
     if (negative.holds() && total.holds()) return;
     const auto most = std::max_element(involved_.begin(), involved_.end(), [&](std::uint32_t a, std::uint32_t b) {
         return std::abs(received_[a].gained_J) < std::abs(received_[b].gained_J);

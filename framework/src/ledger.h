@@ -27,8 +27,10 @@ public:
     void after_search(const World& world, StageKind stage, const char* plugin);
     // The contacts that a response is about to get.
     void check_depths(std::span<const Contact> contacts, const char* narrowphase);
-    // `contacts` with the impulses that the response has written.
-    void after_response(const World& world, std::span<const Contact> contacts, double dissipated_J, const char* plugin);
+    // `contacts` with the impulses that the response has written. Bodies that settle may gain energy: see
+    // ResponseInput.
+    void after_response(const World& world, std::span<const Contact> contacts, double dissipated_J, bool settling,
+                        const char* plugin);
 
     const std::optional<LedgerBreak>& first_break() const { return break_; }
 
@@ -59,7 +61,8 @@ private:
     void link(const Contact& contact);
     std::uint32_t root(std::uint32_t body);
     void check_momenta(const World& world, std::span<const Contact> contacts, std::uint32_t body, const char* plugin);
-    void check_energy(const World& world, std::span<const Contact> contacts, double dissipated_J, const char* plugin);
+    void check_energy(const World& world, std::span<const Contact> contacts, double dissipated_J, bool settling,
+                      const char* plugin);
     BodyState state_before(const World& world, std::uint32_t body) const;
 
     LedgerConfig limits_;

@@ -297,7 +297,7 @@ void Pipeline::respond_with(Rule& rule, double dt, double settle) {
         },
         [&] { return blamed_pair(rule, dt); });
     require_finite_response(rule, output.dissipated_J, first_event);
-    if (ledger) ledger->after_response(world, rule.contacts, output.dissipated_J, plugin);
+    if (ledger) ledger->after_response(world, rule.contacts, output.dissipated_J, settle > 0, plugin);
     for (std::size_t i = 0; i < rule.contacts.size(); ++i)
         contacts.rows[rule.rows[i]].impulse = rule.contacts[i].impulse;
     measure.unresolved += output.unresolved;

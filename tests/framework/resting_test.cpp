@@ -1,5 +1,6 @@
 // Bodies that come to rest on each other in stepping `continuous`.
 #include "framework/scenes.h"
+#include "framework/solids.h"
 #include "narrowphase/solids.h"
 
 #include <catch2/catch.hpp>
@@ -16,6 +17,7 @@ Scene floor_scene(double dt, double restitution, double slope = 0) {
     Scene scene = empty_scene();
     scene.pipeline.step.mode = "continuous";
     scene.pipeline.step.dt = dt;
+    scene.pipeline.ledger.check = true;
     scene.world.forces.gravity = Vec3(0, -g, 0);
     scene.world.materials[0].restitution = restitution;
     BodyDescription floor;
@@ -45,6 +47,8 @@ struct Run {
         CHECK(result.max_penetration_m == 0);
         CHECK(result.unresolved == 0);
         CHECK(result.energy_drift < 1e-12);
+        const auto broken = simulation.first_break();
+        CHECK((broken ? to_string(*broken, simulation.world()) : "") == "");
     }
     const World& world() const { return simulation.world(); }
 
@@ -77,7 +81,7 @@ TEST_CASE("a box that lies on the floor slides and spins as if the floor were no
         const auto box =
             put(scene, add_shape(scene, make_box("box", Vec3(0.4, 0.3, 0.5))), Vec3(0, 0.3, 0), velocity, spin);
         const Run run(scene, 1);
-        CHECK((run.world().position[box] - Vec3(1, 0.3, 0.3)).norm() < 1e-9);
+        CHECK((run.world().position[box] - Vec3(1, 0.3, 0.3)).norm() < 1e-8);
         CHECK((run.world().angular_velocity[box] - spin).norm() < 1e-9);
         CHECK((run.world().orientation[box] * Vec3::UnitX() - Vec3(std::cos(2), 0, -std::sin(2))).norm() < 1e-7);
     }
@@ -137,6 +141,36 @@ TEST_CASE("a box that falls on an edge ends on a face, and its energy only falls
         CHECK(simulation.world().velocity[box].norm() < 1e-6);
         CHECK(simulation.world().angular_velocity[box].norm() < 1e-6);
     }
+}
+
+TEST_CASE("bodies that fall into a room come to rest in a heap without overlapping", "[continuous][resting]") {
+    const Shape shapes[] = {make_box("box", Vec3(0.25, 0.2, 0.3)), make_mesh("bar", u_bar())};
+    for (const Shape& shape : shapes)
+        for (const double restitution : {0.0, 0.5}) {
+            CAPTURE(shape.name, restitution);
+            Scene scene = floor_scene(0.004, restitution);
+            const double r = shape.radius;
+            Room room = room_of(3 * r);
+            room.min.y() = 0;
+            room.max.y() = 9 * r;
+            scene.rooms.push_back(room);
+            const std::uint32_t id = add_shape(scene, shape);
+            std::mt19937 random(5);
+            std::normal_distribution<double> turn;
+            for (int i = 0; i < 8; ++i) {
+                const Quat q(turn(random), turn(random), turn(random), turn(random));
+                put(scene, id, r * Vec3(i % 2 ? 1.3 : -1.3, 1.5 + 2.5 * (i / 4), i / 2 % 2 ? 1.3 : -1.3), Vec3::Zero(),
+                    Vec3::Zero(), q.normalized());
+            }
+            const auto host = make_host(1);
+            Simulation simulation(scene, plugins(), *host, 1);
+            for (int i = 0; i < 250; ++i) simulation.step();
+            const RunResult result = simulation.result();
+            CHECK(result.max_penetration_m < 1e-9);
+            CHECK(result.escaped == 0);
+            CHECK(result.energy_drift < 1e-12);
+            CHECK(result.energy_final_J < result.energy_initial_J);
+        }
 }
 
 TEST_CASE("P6 666: balls that fall onto each other without bouncing never overlap", "[continuous][resting]") {

@@ -55,7 +55,9 @@ public:
         if (best_.distance > 0 && best_.tie_count < 2) best_.normal = (best_.on_b - best_.on_a) / best_.distance;
         const bool lost = best_.distance < direction_lost * size_;
         best_.projected = lost ? -infinity : projected_gap(a_, b_, best_.normal);
-        if (best_.distance < direction_blurred * size_) look_along_features();
+        // Between nearest points stands a plane that shows their distance. Where it does not, as when the foot of a
+        // corner is next to an edge, the points are not quite the nearest.
+        if (best_.distance < direction_blurred * size_ || best_.projected < 0.5 * best_.distance) look_along_features();
         return best_;
     }
 

@@ -11,6 +11,7 @@ using Candidate = ImpactScratch::Candidate;
 
 constexpr std::size_t many_candidates = 64;  // more are taken only where a shorter span does not help
 constexpr double widest_turn = 0.5;          // rad; a bound of second order says nothing beyond that
+constexpr double hairline = 1000;            // touch distances; bodies at rest may sink so far by rounding
 constexpr int most_steps = 5000;             // of one pair in one span; then the time reached is reported as an impact
 
 bool later(const Candidate& x, const Candidate& y) { return std::tie(x.time, x.a, x.b) > std::tie(y.time, y.a, y.b); }
@@ -27,7 +28,7 @@ public:
         for (double time = from + near.begin; time < until_;) {
             const PairMoment moment = pair_.at(time);
             double span = first_span(until_ - time);
-            const double shortest = 1e-6 * span;
+            const double shortest = std::max(1e-6 * span, 1e-15 * until_);  // as times are kept
             while (!collect(moment, span, span > shortest)) span *= 0.25;
             if (const double found = advance(time + span); found < infinity) return found;
             if (!(time + span > time)) return time;
@@ -89,11 +90,13 @@ private:
         const auto [fa, fb] = features(moment, candidate.a, candidate.b);
         const FeatureGap gap = pair_.gap(moment, fa, fb);
         const double width = gap.projected - pair_.radii;
-        if (!(width > -pair_.touch)) return true;  // they overlap, from the start
+        if (!(width > -hairline * pair_.touch)) return true;  // they overlap, from the start
         const bool close = width <= 2 * pair_.touch;
         if (close && pair_.approach(moment, gap) > pair_.approach_noise(moment)) return true;
         const double target = !close ? pair_.touch : width > 0 ? 0.5 * width : width - 0.125 * pair_.touch;
-        const double safe = pair_.safe_time(moment, fa, fb, gap, target, end - moment.time);
+        double safe = pair_.safe_time(moment, fa, fb, gap, target, end - moment.time);
+        // Half as far, not to where surfaces that part come as close again: they shall meet at the touch distance next.
+        if (close) safe *= 0.5;
         if (!(moment.time + safe > moment.time)) return true;
         candidate.time = moment.time + safe;
         return false;

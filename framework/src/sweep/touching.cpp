@@ -32,29 +32,36 @@ public:
 
     void visit(const ConvexFeature& fa, const ConvexFeature& fb) {
         const FeatureGap gap = pair_.gap(moment_, fa, fb);
-        const double width = gap.projected - pair_.radii;
-        if (!(width > -pair_.touch && width <= reach_)) return;
+        width_ = gap.projected - pair_.radii;
+        if (!(width_ > -pair_.touch && width_ <= reach_)) return;
         normal_ = gap.normal;
         if (fa.count == 1 || (!pair_.b.is_plane() && fb.count == 1)) {
-            add(gap.on_a + (pair_.a.radius + 0.5 * width) * normal_, width);
+            add(gap.on_a + (pair_.a.radius + 0.5 * width_) * normal_, width_);
             return;
         }
-        const Support a = support(fa, normal_, reach_);
         surface_a_ = -infinity;
         for (int i = 0; i < fa.count; ++i) surface_a_ = std::max(surface_a_, normal_.dot(fa.corners[i]));
-        surface_b_ = surface_a_ + width;
+        // What touches, and then what nearly lies in the plane of contact: with that the nearest points alone could be
+        // taken for the corners of an area.
+        const double touching = 4 * pair_.touch;
+        if (width_ <= touching) add_points(fa, fb, gap, touching);
+        if (reach_ > touching) add_points(fa, fb, gap, reach_);
+    }
+
+private:
+    void add_points(const ConvexFeature& fa, const ConvexFeature& fb, const FeatureGap& gap, double depth) {
+        const Support a = support(fa, normal_, depth);
         if (pair_.b.is_plane() || a.count == 1) {
             for (int i = 0; i < a.count; ++i) add_corner_of_a(a.points[i]);
             return;
         }
-        const Support b = support(fb, -normal_, reach_);
+        const Support b = support(fb, -normal_, depth);
         if (b.count == 1)
             add_corner_of_b(b.points[0]);
         else if (!add_shared_area(a, b))
-            add(0.5 * (gap.on_a + gap.on_b), width);
+            add(0.5 * (gap.on_a + gap.on_b), width_);
     }
 
-private:
     void add(const Vec3& point, double width) {
         if (!(width <= reach_)) return;
         const double gap = width <= 4 * pair_.touch ? 0 : width;
@@ -66,7 +73,7 @@ private:
         points_.push_back({point, normal_, gap});
     }
     // The other surface is no nearer than its foremost point.
-    void add_corner_of_a(const Vec3& point) { add(point, surface_b_ - normal_.dot(point)); }
+    void add_corner_of_a(const Vec3& point) { add(point, surface_a_ + width_ - normal_.dot(point)); }
     void add_corner_of_b(const Vec3& point) { add(point, normal_.dot(point) - surface_a_); }
 
     // Signed area of (p, q, r) in the view along the normal, times two.
@@ -106,7 +113,7 @@ private:
         const double at_p = turn(r, s, p), at_q = turn(r, s, q), at_r = turn(p, q, r), at_s = turn(p, q, s);
         const bool across = (at_p > 0) != (at_q > 0) && (at_r > 0) != (at_s > 0);
         if (!across || at_p == at_q) return false;
-        add(p + (at_p / (at_p - at_q)) * (q - p), surface_b_ - surface_a_);
+        add(p + (at_p / (at_p - at_q)) * (q - p), width_);
         return true;
     }
 
@@ -116,7 +123,8 @@ private:
     std::size_t first_;
     double reach_, near_;
     Vec3 normal_ = Vec3::Zero();
-    double surface_a_ = 0, surface_b_ = 0;  // along the normal: the foremost points of the two features at hand
+    double width_ = 0;      // m, of the gap between the features at hand
+    double surface_a_ = 0;  // where the foremost point of A's feature is, along the normal
 };
 
 }  // namespace
