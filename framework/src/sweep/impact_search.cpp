@@ -94,9 +94,10 @@ private:
         const bool close = width <= 2 * pair_.touch;
         if (close && pair_.approach(moment, gap) > pair_.approach_noise(moment)) return true;
         const double target = !close ? pair_.touch : width > 0 ? 0.5 * width : width - 0.125 * pair_.touch;
-        double safe = pair_.safe_time(moment, fa, fb, gap, target, end - moment.time);
+        const double left = end - moment.time;
+        double safe = pair_.safe_time(moment, fa, fb, gap, target, left);
         // Half as far, not to where surfaces that part come as close again: they shall meet at the touch distance next.
-        if (close) safe *= 0.5;
+        if (close && safe < left) safe *= 0.5;
         if (!(moment.time + safe > moment.time)) return true;
         candidate.time = moment.time + safe;
         return false;
