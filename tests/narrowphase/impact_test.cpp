@@ -44,11 +44,11 @@ public:
         stage_->find_contacts({moved, {&pair_, 1}, {&detail, 1}}, contacts);
         return !contacts.rows.empty();
     }
-    std::vector<Contact> touching(double time) {
+    std::vector<Contact> touching(double time, double reach = 0) {
         const World moved = world_at(time);
         const Detail detail = Detail::manifold;
         Contacts contacts;
-        stage_->find_touching({moved, {&pair_, 1}, {&detail, 1}}, contacts);
+        stage_->find_touching({moved, {&pair_, 1}, {&detail, 1}, reach}, contacts);
         return contacts.rows;
     }
 
@@ -135,6 +135,25 @@ TEST_CASE("C5 start touching: only what approaches meets at once", "[impact]") {
             CHECK(impact(Vec3(1, 0, 0)) == infinity);
             CHECK(impact(Vec3(0, -1, 0)) == 0);
             CHECK(impact(Vec3(0, -1e-6, 0)) == 0);
+        }
+}
+
+TEST_CASE("what stands above the floor within reach is in contact with its gap", "[impact]") {
+    const double above = 1e-6;
+    for (const Shape& floor :
+         {make_half_space("floor", Vec3::UnitY(), 0.5), make_box("floor", Vec3(2, 0.5, 2)), box_mesh(Vec3(2, 0.5, 2))})
+        for (const Shape& body : {make_sphere("ball", 0.5), box_mesh(Vec3(0.5, 0.5, 0.5))}) {
+            CAPTURE(to_string(floor.kind), to_string(body.kind));
+            Sweep sweep(
+                world_of_moving({body, Vec3(0.25, 1 + above, 0.125)}, Vec3::Zero(), Vec3::Zero(), standing(floor)));
+            CHECK(sweep.touching(0).empty());
+            CHECK(sweep.touching(0, 0.9 * above).empty());
+            const auto rows = sweep.touching(0, 1.1 * above);
+            REQUIRE(rows.size() >= (body.kind == ShapeKind::sphere ? 1 : 4));
+            for (const Contact& c : rows) {
+                CHECK((c.normal - Vec3(0, -1, 0)).norm() < 1e-9);
+                CHECK(c.depth == Approx(-above).epsilon(1e-6));
+            }
         }
 }
 
