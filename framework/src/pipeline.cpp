@@ -218,31 +218,6 @@ bool Pipeline::route(const Pair& pair) {
     return true;
 }
 
-namespace {
-
-// What contact.h promises of a row; a plugin that claims more than it gives is found out here.
-std::string complaint(const Contact& c, Detail detail, bool touching) {
-    if (!c.normal.allFinite() || !c.arm_a.allFinite() || !c.arm_b.allFinite() || !std::isfinite(c.depth))
-        return "a value that is not finite";
-    if (detail == Detail::overlap) return "";
-    if (!(std::abs(c.normal.norm() - 1) < 1e-6))
-        return "a normal of length " + std::to_string(c.normal.norm()) + ", not 1";
-    if (touching != (c.depth <= 0))
-        return "a depth of " + std::to_string(c.depth) + " m, which is " + (touching ? "above" : "not above") + " 0";
-    return "";
-}
-
-}  // namespace
-
-void Pipeline::require_fit(const Contact& contact, const Pair& asked, Detail detail, bool touching) const {
-    const Pair pair{contact.a, contact.b};
-    const std::string wrong =
-        pair == asked ? complaint(contact, detail, touching) : "a pair that was not asked for, or out of order";
-    if (!wrong.empty())
-        fail("narrowphase", narrowphase_plugin->descriptor->name,
-             "its contact of the bodies " + pair_text(pair) + " has " + wrong);
-}
-
 void Pipeline::find_contacts() {
     contacts.clear();
     run_stage(

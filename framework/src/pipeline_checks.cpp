@@ -27,6 +27,18 @@ std::string pair_blame(const World& world, std::uint32_t a, std::uint32_t b) {
     return " (bodies " + body_text(world, a) + " and " + body_text(world, b) + ")";
 }
 
+// What contact.h promises of a row; a plugin that claims more than it gives is found out here.
+std::string complaint(const Contact& c, Detail detail, bool touching) {
+    if (!c.normal.allFinite() || !c.arm_a.allFinite() || !c.arm_b.allFinite() || !std::isfinite(c.depth))
+        return "a value that is not finite";
+    if (detail == Detail::overlap) return "";
+    if (!(std::abs(c.normal.norm() - 1) < 1e-6))
+        return "a normal of length " + std::to_string(c.normal.norm()) + ", not 1";
+    if (touching != (c.depth <= 0))
+        return "a depth of " + std::to_string(c.depth) + " m, which is " + (touching ? "above" : "not above") + " 0";
+    return "";
+}
+
 template <class Call>
 bool throws(Call&& call) {
     try {
@@ -42,6 +54,16 @@ bool throws(Call&& call) {
 void Pipeline::fail(const char* stage, const std::string& plugin, const std::string& what) const {
     throw std::runtime_error(std::string(stage) + " '" + plugin + "' failed at step " + std::to_string(step_number()) +
                              ": " + what);
+}
+
+void Pipeline::require_fit(const Contact& contact, const Pair& asked, Detail detail, bool touching) const {
+    const Pair pair{contact.a, contact.b};
+    const std::string wrong =
+        pair == asked ? complaint(contact, detail, touching) : "a pair that was not asked for, or out of order";
+    if (!wrong.empty())
+        fail(
+            "narrowphase", narrowphase_plugin->descriptor->name,
+            "its contact of the bodies " + std::to_string(pair.a) + " and " + std::to_string(pair.b) + " has " + wrong);
 }
 
 void Pipeline::require_finite_motion(std::uint32_t body, const BodyState& after) const {

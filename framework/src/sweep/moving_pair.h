@@ -73,7 +73,7 @@ public:
     double approach_noise(const PairMoment& moment) const;
 
     FeatureGap gap(const PairMoment& moment, const ConvexFeature& fa, const ConvexFeature& fb) const;
-    // The plane's normal, from A into the half-space B, and a point of it.
+    // The plane's normal, from A into the half-space B.
     Vec3 plane_normal(const PairMoment& moment) const { return -(moment.b_to_a.rotation * b.plane_normal); }
 
     SweptBody a, b;
