@@ -36,7 +36,7 @@ std::vector<std::string> split_values(const std::string& text) {
 
 }  // namespace
 
-PluginDefaults plugin_defaults() { return {"grid", "moller", "impulse"}; }
+PluginDefaults plugin_defaults() { return {"grid", "moller", "impulse", "gl"}; }
 
 PluginLibrary open_plugins(const std::vector<std::string>& plugin_path, const std::filesystem::path& scene_folder) {
     const std::vector<std::filesystem::path> folders(plugin_path.begin(), plugin_path.end());

@@ -15,7 +15,8 @@ struct PluginOptions {
     std::string name;
 };
 
-constexpr StageKind stage_kinds[] = {StageKind::broadphase, StageKind::narrowphase, StageKind::response};
+constexpr StageKind stage_kinds[] = {StageKind::broadphase, StageKind::narrowphase, StageKind::response,
+                                     StageKind::render};
 
 std::vector<std::string> shape_kind_names(std::uint32_t bits) {
     std::vector<std::string> names;

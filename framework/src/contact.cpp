@@ -7,6 +7,7 @@ const char* to_string(StageKind stage) {
     case StageKind::broadphase: return "broadphase";
     case StageKind::narrowphase: return "narrowphase";
     case StageKind::response: return "response";
+    case StageKind::render: return "render";
     }
     return "unknown stage";
 }

@@ -47,9 +47,9 @@ void require_same_abi(const AbiTag& plugin) {
 bool is_missing(const char* text) { return !text || !*text; }
 
 void require_sound(const PluginDescriptor& plugin) {
-    if (plugin.stage > StageKind::response)
+    if (plugin.stage > StageKind::render)
         throw Refusal("its stage number is " + decimal(static_cast<std::uint32_t>(plugin.stage)) +
-                      ", must be 0 (broadphase), 1 (narrowphase) or 2 (response)");
+                      ", must be 0 (broadphase), 1 (narrowphase), 2 (response) or 3 (render)");
     if (is_missing(plugin.name)) throw Refusal("its descriptor gives no name");
     if (is_missing(plugin.summary)) throw Refusal("its descriptor gives no summary");
     if (is_missing(plugin.source)) throw Refusal("its descriptor gives no source");

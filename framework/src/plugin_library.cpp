@@ -82,6 +82,7 @@ bool is_of_kind(const Stage* stage, StageKind kind) {
     case StageKind::broadphase: return dynamic_cast<const Broadphase*>(stage);
     case StageKind::narrowphase: return dynamic_cast<const Narrowphase*>(stage);
     case StageKind::response: return dynamic_cast<const Response*>(stage);
+    case StageKind::render: return dynamic_cast<const Renderer*>(stage);
     }
     return false;
 }

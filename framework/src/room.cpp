@@ -43,6 +43,9 @@ Shape wall_shape(const std::string& name, const Slab& slab, ShapeKind kind) {
     }
 }
 
+constexpr const char* wall_word = "wall";
+constexpr const char* name_prefix = "room ";
+
 }  // namespace
 
 void add_walls(World& world, const Room& room, ShapeKind kind, std::size_t room_number) {
@@ -50,8 +53,8 @@ void add_walls(World& world, const Room& room, ShapeKind kind, std::size_t room_
         if (room.open[side]) continue;
         const Slab slab = slab_of(room, side);
         BodyDescription wall;
-        wall.name = "room " + std::to_string(room_number) + " " + side_names[side];
-        wall.kind = "wall";
+        wall.name = name_prefix + std::to_string(room_number) + " " + side_names[side];
+        wall.kind = wall_word;
         wall.is_static = true;
         wall.material = room.material;
         wall.shape = static_cast<std::uint32_t>(world.shapes.size());
@@ -60,6 +63,11 @@ void add_walls(World& world, const Room& room, ShapeKind kind, std::size_t room_
         wall.position = kind == ShapeKind::half_space ? Vec3(slab.center + to_surface * slab.inward) : slab.center;
         world.add(wall);
     }
+}
+
+bool is_room_wall(const World& world, std::uint32_t body) {
+    return world.is_static[body] && world.kinds[world.kind[body]] == wall_word &&
+           world.name[body].starts_with(name_prefix);
 }
 
 bool inside(const Room& room, const Vec3& p) {

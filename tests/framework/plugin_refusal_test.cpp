@@ -86,7 +86,7 @@ TEST_CASE("a plugin with another ABI tag is refused by the field that differs", 
 
 TEST_CASE("a plugin with a senseless descriptor is refused by what is missing", "[plugins]") {
     CHECK(refusal_of_fixture("unknown_stage") ==
-          "its stage number is 7, must be 0 (broadphase), 1 (narrowphase) or 2 (response)");
+          "its stage number is 7, must be 0 (broadphase), 1 (narrowphase), 2 (response) or 3 (render)");
     CHECK(refusal_of_fixture("no_name") == "its descriptor gives no name");
     CHECK(refusal_of_fixture("empty_name") == "its descriptor gives no name");
     CHECK(refusal_of_fixture("no_declare") == "its descriptor names no declare function");

@@ -34,6 +34,7 @@ KOLIZE_API std::vector<Check> check_plugin(const PluginLibrary& library, const L
 std::vector<Check> check_broadphase(const PluginLibrary&, const LoadedPlugin&, const ConformanceOptions&);
 std::vector<Check> check_narrowphase(const PluginLibrary&, const LoadedPlugin&, const ConformanceOptions&);
 std::vector<Check> check_response(const PluginLibrary&, const LoadedPlugin&, const ConformanceOptions&);
+std::vector<Check> check_renderer(const PluginLibrary&, const LoadedPlugin&, const ConformanceOptions&);
 
 // No check failed.
 KOLIZE_API bool passed(const std::vector<Check>& checks);

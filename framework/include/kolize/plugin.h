@@ -9,6 +9,7 @@
 #include <kolize/broadphase.h>
 #include <kolize/narrowphase.h>
 #include <kolize/parameters.h>
+#include <kolize/renderer.h>
 #include <kolize/response.h>
 
 #include <cstddef>
@@ -77,6 +78,11 @@ constexpr std::uint64_t layout_hash() {
                                sizeof(ResponseInput),
                                sizeof(ResponseOutput),
                                sizeof(Event),
+                               sizeof(Room),
+                               sizeof(Frame),
+                               sizeof(Light),
+                               sizeof(Explosion),
+                               sizeof(Image),
                                sizeof(Parameter),
                                sizeof(Value),
                                sizeof(PluginDescriptor),

@@ -4,7 +4,6 @@
 #include <kolize/plugin_library.h>
 #include <kolize/world.h>
 
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -12,15 +11,6 @@
 #include <vector>
 
 namespace kolize {
-
-// Static walls around a box-shaped space; open sides have none.
-struct Room {
-    Vec3 min = Vec3::Zero();  // m
-    Vec3 max = Vec3::Zero();
-    double thickness = 1;  // m; used where walls are boxes
-    std::uint32_t material = 0;
-    std::array<bool, 6> open{};  // -x +x -y +y -z +z
-};
 
 // [[response]]: the first rule that fits a contact takes it.
 struct ResponseRule {
@@ -57,6 +47,21 @@ struct PipelineConfig {
     LedgerConfig ledger;
 };
 
+// Where [render] puts the camera; the rest of it follows from the scene.
+struct CameraConfig {
+    Vec3 eye = Vec3::UnitZ();    // m
+    Vec3 target = Vec3::Zero();  // m
+    Vec3 up = Vec3::UnitY();
+    double field_of_view = 0.9;  // vertical, rad
+};
+
+// [render]: how the scene is shown, by whatever draws it.
+struct RenderConfig {
+    StageConfig stage;
+    std::optional<CameraConfig> camera;  // none: chosen to show the whole scene
+    std::vector<Light> lights;           // [[render.light]]; empty: chosen to light the whole scene
+};
+
 struct Scene {
     std::string file;  // as the user named it
     World world;       // bodies of [[body]]; rooms become bodies when a simulation is made
@@ -64,6 +69,7 @@ struct Scene {
     PipelineConfig pipeline;
     std::optional<std::uint64_t> capsule_step;  // of a capsule: the step that comes next; walls are bodies already
     std::vector<std::string> warnings;  // what the files ask for and is not modelled or not read, a sentence each
+    RenderConfig render;
 };
 
 // Names of plugins that are taken where neither scene nor pipeline names one.
@@ -71,6 +77,7 @@ struct PluginDefaults {
     std::string broadphase;
     std::string narrowphase;
     std::string response;
+    std::string render = "";  // may stay out where nothing is drawn
 };
 
 struct SceneOptions {

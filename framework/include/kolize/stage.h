@@ -7,9 +7,9 @@
 
 namespace kolize {
 
-enum class StageKind : std::uint32_t { broadphase, narrowphase, response };
+enum class StageKind : std::uint32_t { broadphase, narrowphase, response, render };
 
-// "broadphase", "narrowphase", "response".
+// "broadphase", "narrowphase", "response", "render".
 KOLIZE_API const char* to_string(StageKind);
 
 // Base of every object that a plugin makes. Parameters are set after construction and before attach();

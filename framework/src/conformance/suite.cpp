@@ -41,6 +41,7 @@ std::vector<Check> check_plugin(const PluginLibrary& library, const LoadedPlugin
     case StageKind::broadphase: return check_broadphase(library, plugin, options);
     case StageKind::narrowphase: return check_narrowphase(library, plugin, options);
     case StageKind::response: return check_response(library, plugin, options);
+    case StageKind::render: return check_renderer(library, plugin, options);
     }
     throw std::invalid_argument("no conformance suite for this stage kind");
 }

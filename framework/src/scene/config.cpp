@@ -117,6 +117,7 @@ std::vector<StageTable> stage_tables(toml::table& config, const PluginDefaults& 
     std::vector<StageTable> stages;
     collect(stages, StageKind::broadphase, config.get("broadphase"), defaults.broadphase);
     collect(stages, StageKind::narrowphase, config.get("narrowphase"), defaults.narrowphase);
+    collect(stages, StageKind::render, config.get("render"), defaults.render);
     if (toml::array* rules = config["response"].as_array())
         for (toml::node& rule : *rules) collect(stages, StageKind::response, &rule, defaults.response);
     return stages;
@@ -124,7 +125,8 @@ std::vector<StageTable> stage_tables(toml::table& config, const PluginDefaults& 
 
 bool belongs_to_framework(StageKind stage, std::string_view key) {
     return key == "plugin" || (stage == StageKind::narrowphase && key == "walls") ||
-           (stage == StageKind::response && key == "when");
+           (stage == StageKind::response && key == "when") ||
+           (stage == StageKind::render && (key == "camera" || key == "light"));
 }
 
 void drop_foreign_keys(const StageTable& stage, const LoadedPlugin& plugin) {

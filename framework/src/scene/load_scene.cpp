@@ -81,6 +81,7 @@ Scene load_scene(const std::filesystem::path& file, const SceneOptions& options,
     scene.file = file.string();
     scene.pipeline = read_pipeline(config, options.defaults);
     config.contains("capsule") ? read_capsule(config, scene) : read_world(config, scene);
+    scene.render = read_render(config, options.defaults, scene.world);
     for (std::string& warning : frictionless_materials(scene, plugins)) scene.warnings.push_back(std::move(warning));
     return scene;
 }

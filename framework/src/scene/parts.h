@@ -42,4 +42,7 @@ std::array<bool, 6> read_open_sides(TableReader& reader);
 // [capsule], which stands in the place of all of these: world, rooms and the number of the step.
 void read_capsule(const toml::table& config, Scene& scene);
 
+// [render]; lights may name bodies of the world.
+RenderConfig read_render(const toml::table& config, const PluginDefaults& defaults, const World& world);
+
 }  // namespace kolize::config
