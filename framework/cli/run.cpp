@@ -1,5 +1,6 @@
 // kolize run: one scene through one pipeline.
 #include "common.h"
+#include "film/film.h"
 
 #include <kolize/capsule.h>
 
@@ -20,6 +21,7 @@ struct RunOptions {
     bool ledger = false;
     std::string capsule;
     std::optional<std::uint64_t> capsule_at;
+    FilmOptions film;
 };
 
 void print_stages(const RunResult& result) {
@@ -81,11 +83,13 @@ void require_step(std::uint64_t wanted, std::uint64_t first, std::uint64_t count
 }
 
 // Returns what the ledger complains of, or "".
-std::string advance(const RunOptions& options, const Scene& scene, Simulation& simulation, std::uint64_t count) {
+std::string advance(const RunOptions& options, const Scene& scene, Simulation& simulation, std::uint64_t count,
+                    std::optional<Film>& film) {
     const std::uint64_t first = scene.capsule_step.value_or(0);
     if (options.capsule_at) require_step(*options.capsule_at, first, count);
     std::string complaint;
     Progress progress("run", count);
+    if (film) film->look(simulation);
     for (std::uint64_t step = first; step < first + count; ++step, progress.advance()) {
         if (options.capsule_at == step) write_capsule(options, simulation.capture(), "asked for by --capsule-at");
         try {
@@ -94,6 +98,7 @@ std::string advance(const RunOptions& options, const Scene& scene, Simulation& s
             throw std::runtime_error(complaint.empty() ? with_capsule(failure.what(), options, scene, simulation)
                                                        : complaint + "; then " + failure.what());
         }
+        if (film) film->look(simulation);
         if (complaint.empty() && simulation.first_break())
             complaint =
                 with_capsule(to_string(*simulation.first_break(), simulation.world()), options, scene, simulation);
@@ -123,7 +128,10 @@ int run_scene(const RunOptions& options, const PluginLibrary& plugins, Host& hos
     const std::uint64_t steps = options.length.count(scene.pipeline.step.dt, scene.pipeline.step.time);
     Simulation simulation(scene, plugins, host, steps);
     if (!options.capsule.empty()) simulation.keep_steps();
-    const std::string complaint = advance(options, scene, simulation, steps);
+    std::optional<Film> film;
+    if (options.film.wanted()) film.emplace(options.film, scene, simulation, plugins, host, steps);
+    const std::string complaint = advance(options, scene, simulation, steps, film);
+    if (film) film->finish();
     const RunResult result = simulation.result();
     if (options.json != "-") print_result(result);
     if (!options.json.empty()) {
@@ -181,6 +189,8 @@ void add_run(CLI::App& app, int& exit_code) {
                                                "File to keep the first step in that fails or breaks the ledger");
     CLI::Option* capsule_at =
         command->add_option("--capsule-at", options->capsule_at, "Write the capsule of this step instead, and go on");
+    add_film_options(*command, options->film);
+    expect->excludes("--frames")->excludes("--video");
     expect->excludes(pipeline)->excludes("--set")->excludes("--time")->excludes("--steps");
     expect->excludes(ledger)->excludes(capsule)->excludes(capsule_at);
     command->footer("Example: kolize run scene.toml --pipeline fast.toml --set step.dt=0.002 --time 5 --json -");
