@@ -11,9 +11,10 @@ namespace kolize {
 // Of some rows: the impulses p >= 0 after which none of the rows approaches and those that part have p = 0. That is,
 // the velocities u + M^-1 J^T p are the nearest to u, in the metric of kinetic energy, that have J u >= 0: Moreau,
 // "Unilateral contact and dry friction in finite freedom dynamics", 1988. The velocities are unique; the impulses are
-// where the rows are independent. A row that is allowed some approach counts as if it had that much less. Found by conjugate gradients among the rows that push: Dostal, Schoeberl, "Minimizing
-// quadratic functions subject to bound constraints with the rate of convergence and finite termination",
-// Computational Optimization and Applications 30, 2005. A step of it costs a few dozen operations a row.
+// where the rows are independent. A row that is allowed some approach counts as if it had that much less. Found by
+// conjugate gradients among the rows that push: Dostal, Schoeberl, "Minimizing quadratic functions subject to bound
+// constraints with the rate of convergence and finite termination", Computational Optimization and Applications 30,
+// 2005. A step of it costs a few dozen operations a row.
 //
 // The search ends at rounding or after a number of steps, and is inexact then. factor() and energy() are
 // exact for any p, so that no energy is lost or made by that.

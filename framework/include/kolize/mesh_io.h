@@ -1,10 +1,11 @@
-// Reading and writing triangle meshes: OBJ, OFF, STL (text and binary), PLY (text and binary, both byte orders), VRML97.
+// Reading and writing triangle meshes: OBJ, OFF, STL (text and binary), PLY (text and binary, both byte orders),
+// VRML97.
 //
 // Own small readers: they hold to stated limits (files up to 4 GiB, faces of three corners or more, finite coordinates,
 // indices in range), say file:line (or the byte offset in binary files) for anything that is wrong, and never allocate
-// more than the file itself can fill; the few VRML nodes that generate triangles have a limit of their own. Polygons are
-// cut into triangle fans, concave ones into ears (those of VRML where the file says so). STL vertices that are bitwise equal
-// are joined. Units and axes are kept as they stand.
+// more than the file itself can fill; the few VRML nodes that generate triangles have a limit of their own. Polygons
+// are cut into triangle fans, concave ones into ears (those of VRML where the file says so). STL vertices that are
+// bitwise equal are joined. Units and axes are kept as they stand.
 #pragma once
 
 #include <kolize/mesh.h>

@@ -18,8 +18,8 @@ struct ResponseInput {
     std::span<Contact> contacts;        // those that the rule takes, in canonical order; `impulse` is to be written
     std::span<const std::uint8_t> hit;  // per contact: bit 0 set if body A fits the rule's `when`, bit 1 for body B
     double dt = 0;                      // s
-    // s. Above 0 the bodies rest on each other for so long. Nothing bounces then, whatever the restitution, and `depth` is
-    // how far a contact has to part in that time, or, below 0, how far it may close.
+    // s. Above 0 the bodies rest on each other for so long. Nothing bounces then, whatever the restitution, and `depth`
+    // is how far a contact has to part in that time, or, below 0, how far it may close.
     double settle = 0;
 
     // The approach that a contact may keep, m/s; below 0: the speed at which it has to part.
