@@ -43,6 +43,7 @@ int main(int argc, char** argv) {
         "Exit codes: 0 fine, 1 a run failed or broke an expectation, 2 bad input or usage.");
     int exit_code = fine;
     kolize::cli::add_run(app, exit_code);
+    kolize::cli::add_view(app, exit_code);
     kolize::cli::add_compare(app, exit_code);
     kolize::cli::add_bench(app, exit_code);
     kolize::cli::add_check(app, exit_code);

@@ -1,6 +1,7 @@
 // kolize run: one scene through one pipeline.
 #include "common.h"
 #include "film/film.h"
+#include "session.h"
 
 #include <kolize/capsule.h>
 
@@ -22,6 +23,7 @@ struct RunOptions {
     std::string capsule;
     std::optional<std::uint64_t> capsule_at;
     FilmOptions film;
+    RecordOptions record;
 };
 
 void print_stages(const RunResult& result) {
@@ -50,15 +52,16 @@ void print_result(const RunResult& result) {
               << "\nstate hash " << hex(result.state_hash) << '\n';
 }
 
-Scene load(const RunOptions& options, const PluginLibrary& plugins) {
+SceneOptions scene_options(const RunOptions& options) {
     Settings settings = parse_settings(options.set);
     if (options.ledger) settings.emplace_back("ledger.check", "true");
-    return load_scene(options.scene, {options.pipeline, settings, plugin_defaults()}, plugins);
+    return {options.pipeline, settings, plugin_defaults()};
 }
 
 // Returns the file: in the working directory and named after scene and step, where the user gave no name.
 std::string write_capsule(const RunOptions& options, const Scene& capsule, const std::string& reason) {
-    const std::string scene = std::filesystem::path(options.scene).filename().string();
+    const std::string scene =
+        std::filesystem::path(options.scene.empty() ? options.record.replay : options.scene).filename().string();
     const std::string file = !options.capsule.empty() ? options.capsule
                                                       : scene.substr(0, scene.find('.')) + ".step" +
                                                             std::to_string(*capsule.capsule_step) + ".capsule.toml";
@@ -83,8 +86,9 @@ void require_step(std::uint64_t wanted, std::uint64_t first, std::uint64_t count
 }
 
 // Returns what the ledger complains of, or "".
-std::string advance(const RunOptions& options, const Scene& scene, Simulation& simulation, std::uint64_t count,
-                    std::optional<Film>& film) {
+std::string advance(const RunOptions& options, Session& session, std::uint64_t count, std::optional<Film>& film) {
+    const Scene& scene = session.scene();
+    const Simulation& simulation = session.simulation();
     const std::uint64_t first = scene.capsule_step.value_or(0);
     if (options.capsule_at) require_step(*options.capsule_at, first, count);
     std::string complaint;
@@ -93,7 +97,7 @@ std::string advance(const RunOptions& options, const Scene& scene, Simulation& s
     for (std::uint64_t step = first; step < first + count; ++step, progress.advance()) {
         if (options.capsule_at == step) write_capsule(options, simulation.capture(), "asked for by --capsule-at");
         try {
-            simulation.step();
+            session.step();
         } catch (const std::exception& failure) {
             throw std::runtime_error(complaint.empty() ? with_capsule(failure.what(), options, scene, simulation)
                                                        : complaint + "; then " + failure.what());
@@ -122,27 +126,44 @@ Json ledger_json(const Simulation& simulation) {
             {"sentence", to_string(*first, simulation.world())}};
 }
 
-int run_scene(const RunOptions& options, const PluginLibrary& plugins, Host& host) {
-    const Scene scene = load(options, plugins);
-    for (const std::string& warning : scene.warnings) host.warn(warning);
-    const std::uint64_t steps = options.length.count(scene.pipeline.step.dt, scene.pipeline.step.time);
-    Simulation simulation(scene, plugins, host, steps);
-    if (!options.capsule.empty()) simulation.keep_steps();
-    std::optional<Film> film;
-    if (options.film.wanted()) film.emplace(options.film, scene, simulation, plugins, host, steps);
-    const std::string complaint = advance(options, scene, simulation, steps, film);
-    if (film) film->finish();
+Json replay_json(const Session& session) {
+    Json json = {{"steps", session.compared()}, {"same", !session.parting()}};
+    if (session.parting()) json["parts_at_step"] = session.parting()->step;
+    return json;
+}
+
+void write_result(const RunOptions& options, const Session& session) {
+    const Simulation& simulation = session.simulation();
     const RunResult result = simulation.result();
-    if (options.json != "-") print_result(result);
-    if (!options.json.empty()) {
-        Json json = to_json(result, pipeline_json(simulation));
-        if (scene.pipeline.ledger.check) json["ledger"] = ledger_json(simulation);
-        json["host"] = host_block();
-        json["command"] = command_line();
-        write_json(json, options.json);
+    if (options.json != "-") {
+        print_result(result);
+        if (session.replays()) std::cout << replay_text(session) << '\n';
     }
+    if (options.json.empty()) return;
+    Json json = to_json(result, pipeline_json(simulation));
+    if (session.scene().pipeline.ledger.check) json["ledger"] = ledger_json(simulation);
+    if (session.replays()) json["replay"] = replay_json(session);
+    json["host"] = host_block();
+    json["command"] = command_line();
+    write_json(json, options.json);
+}
+
+int run_scene(const RunOptions& options, const PluginLibrary& plugins, Host& host) {
+    Subject subject = load_subject(options.scene, options.record, scene_options(options), plugins);
+    for (const std::string& warning : subject.scene.warnings) host.warn(warning);
+    const std::uint64_t steps = count_steps(subject, options.length);
+    const bool has_to_agree = subject.recording && !subject.own_pipeline;
+    Session session(std::move(subject), plugins, host, steps);
+    if (!options.record.record.empty()) session.record();
+    if (!options.capsule.empty()) session.simulation().keep_steps();
+    std::optional<Film> film;
+    if (options.film.wanted()) film.emplace(options.film, session.scene(), session.simulation(), plugins, host, steps);
+    const std::string complaint = advance(options, session, steps, film);
+    if (film) film->finish();
+    if (!options.record.record.empty()) session.write_recording(options.record.record);
+    write_result(options, session);
     if (!complaint.empty()) std::cerr << "kolize: " << complaint << '\n';
-    return complaint.empty() ? 0 : 1;
+    return complaint.empty() && !(has_to_agree && session.parting()) ? 0 : 1;
 }
 
 int run_expectations(const RunOptions& options, const PluginLibrary& plugins, Host& host) {
@@ -173,7 +194,7 @@ int run(const RunOptions& options) {
 void add_run(CLI::App& app, int& exit_code) {
     const auto options = std::make_shared<RunOptions>();
     CLI::App* command = app.add_subcommand("run", "Run a scene through its pipeline and measure it");
-    command->add_option("scene", options->scene, "Scene file or capsule (TOML)")->required();
+    command->add_option("scene", options->scene, "Scene file or capsule (TOML)");
     CLI::Option* pipeline = command->add_option("--pipeline", options->pipeline, "Pipeline file: replaces its tables");
     add_set_option(*command, options->set);
     add_length_options(*command, options->length);
@@ -190,6 +211,8 @@ void add_run(CLI::App& app, int& exit_code) {
     CLI::Option* capsule_at =
         command->add_option("--capsule-at", options->capsule_at, "Write the capsule of this step instead, and go on");
     add_film_options(*command, options->film);
+    add_record_options(*command, options->record);
+    expect->excludes("--record")->excludes("--replay");
     expect->excludes("--frames")->excludes("--video");
     expect->excludes(pipeline)->excludes("--set")->excludes("--time")->excludes("--steps");
     expect->excludes(ledger)->excludes(capsule)->excludes(capsule_at);

@@ -5,6 +5,8 @@
 
 namespace kolize {
 
+void Broadphase::outline(Outline&) const {}
+
 namespace {
 
 // Written so that a NaN fails, and without branches: this runs over every box of every step.

@@ -1,85 +1,11 @@
 #include <kolize/capsule.h>
 
-#include <charconv>
+#include "toml_writer.h"
+
+#include <numbers>
 
 namespace kolize {
 namespace {
-
-// C99's %a with as many digits as the bits need, in any locale.
-std::string hex(double value) {
-    char digits[32];
-    const std::string text(digits, std::to_chars(digits, digits + sizeof digits, value, std::chars_format::hex).ptr);
-    return text[0] == '-' ? "-0x" + text.substr(1) : "0x" + text;
-}
-
-std::string hex(const Vec3& v) { return hex(v.x()) + " " + hex(v.y()) + " " + hex(v.z()); }
-std::string hex(const Quat& q) { return hex(q.w()) + " " + hex(q.x()) + " " + hex(q.y()) + " " + hex(q.z()); }
-std::string quoted(const std::string& text) { return to_string(Value(text)); }
-
-// TOML, line by line.
-class Writer {
-public:
-    void line(const std::string& text) { text_ += text + "\n"; }
-    void table(const std::string& head) { line("\n" + head); }
-    void plain(const std::string& key, const Value& value) { line(key + " = " + to_string(value)); }
-    template <class T>
-    void exact(const std::string& key, const T& value) {
-        line(key + " = \"" + hex(value) + "\"");
-    }
-    void flag(const std::string& key, bool value) {
-        if (value) plain(key, true);
-    }
-    void name(const std::string& key, const std::string& value) {
-        if (!value.empty()) plain(key, value);
-    }
-    const std::string& text() const { return text_; }
-
-private:
-    std::string text_;
-};
-
-void write_stage(Writer& out, const std::string& head, const StageConfig& stage) {
-    out.table(head);
-    out.plain("plugin", stage.plugin);
-    for (const auto& [key, setting] : stage.settings) out.plain(key, setting.value);
-}
-
-void write_when(Writer& out, const std::vector<std::string>& kinds) {
-    if (kinds.size() == 1) out.line("when = { kind = " + quoted(kinds[0]) + " }");
-    if (kinds.size() == 2) out.line("when = { kinds = [" + quoted(kinds[0]) + ", " + quoted(kinds[1]) + "] }");
-}
-
-// Decimals are exact too: to_string gives the shortest that reads back as the same double.
-void write_step(Writer& out, const StepConfig& step) {
-    out.table("[step]");
-    out.plain("dt", step.dt);
-    out.plain("time", step.dt);  // `kolize run` takes this one step, if not told otherwise
-    out.plain("mode", step.mode);
-    out.plain("integrator", step.integrator);
-    out.plain("tolerance", step.tolerance);
-    out.plain("max_impacts", std::int64_t(step.max_impacts));
-}
-
-void write_ledger(Writer& out, const LedgerConfig& ledger) {
-    out.table("[ledger]");
-    out.plain("check", ledger.check);
-    out.plain("energy", ledger.energy);
-    out.plain("momentum", ledger.momentum);
-    out.plain("angular_momentum", ledger.angular_momentum);
-    if (ledger.penetration < infinity) out.plain("penetration", ledger.penetration);
-}
-
-void write_pipeline(Writer& out, const PipelineConfig& pipeline) {
-    write_step(out, pipeline.step);
-    write_ledger(out, pipeline.ledger);
-    write_stage(out, "[broadphase]", pipeline.broadphase);
-    write_stage(out, "[narrowphase]", pipeline.narrowphase);
-    out.plain("walls", pipeline.walls);
-    for (const ResponseRule& rule : pipeline.responses) {
-        write_stage(out, "[[response]]", rule.stage);
-        write_when(out, rule.kinds);
-    }
-}
 
 void write_forces(Writer& out, const Forces& forces) {
     out.table("[capsule.forces]");
@@ -139,7 +65,7 @@ void write_body(Writer& out, const World& world, std::uint32_t body) {
     out.exact("torque", world.constant_torque[body]);
 }
 
-void write_room(Writer& out, const Room& room) {
+void write_room(Writer& out, const Room& room, bool has_walls) {
     constexpr const char* sides[] = {"-x", "+x", "-y", "+y", "-z", "+z"};
     out.table("[[capsule.room]]");
     out.exact("min", room.min);
@@ -148,25 +74,68 @@ void write_room(Writer& out, const Room& room) {
     for (std::size_t side = 0; side < room.open.size(); ++side)
         if (room.open[side]) open += (open.empty() ? "" : ", ") + quoted(sides[side]);
     out.line("open = [" + open + "]");
+    if (has_walls) return;
+    out.exact("thickness", room.thickness);
+    out.plain("material", std::int64_t(room.material));
+}
+
+void write_camera(Writer& out, const CameraConfig& camera) {
+    out.line("camera = { eye = " + list(camera.eye) + ", target = " + list(camera.target) + ", up = " +
+             list(camera.up) + ", fov_deg = " + to_string(Value(camera.field_of_view * 180 / std::numbers::pi)) + " }");
+}
+
+void write_light(Writer& out, const Light& light, const World& world) {
+    out.table("[[render.light]]");
+    out.line("position = " + list(light.position));
+    out.line("colour = " + list(light.colour));
+    out.plain("range", light.range);
+    if (light.body) out.plain("body", world.name[*light.body]);
+    if (light.kind == LightKind::point) return;
+    out.plain("kind", std::string("spot"));
+    out.line("direction = " + list(light.direction));
+    out.plain("cone_deg", light.cone * 180 / std::numbers::pi);
+}
+
+void write_texture(Writer& out, const TextureConfig& texture, const World& world) {
+    out.table("[[render.texture]]");
+    out.plain("shape", world.shapes[texture.shape].name);
+    out.plain("file", std::filesystem::absolute(texture.file).string());
+    out.plain("side", texture.side);
 }
 
 }  // namespace
 
-std::string capsule_text(const Scene& scene, const std::string& reason) {
-    const std::uint64_t step = scene.capsule_step.value_or(0);
-    Writer out;
-    out.line("# The step goes on from here to the same bits: kolize run THIS_FILE [--steps N]");
-    out.plain("schema", std::int64_t(1));
-    write_pipeline(out, scene.pipeline);
+void write_render(Writer& out, const RenderConfig& render, const World& world) {
+    if (render.stage.plugin.empty()) return;
+    write_stage(out, "[render]", render.stage);
+    if (render.camera) write_camera(out, *render.camera);
+    for (const Light& light : render.lights) write_light(out, light, world);
+    for (const TextureConfig& texture : render.textures) write_texture(out, texture, world);
+}
+
+void write_world(Writer& out, const Scene& scene, const std::string& reason) {
+    const bool has_walls = scene.capsule_step.has_value();
     out.table("[capsule]");
-    out.plain("step", static_cast<std::int64_t>(step));
+    out.plain("step", static_cast<std::int64_t>(scene.capsule_step.value_or(0)));
+    if (!has_walls) out.plain("walls", false);
     out.name("scene", scene.file);
     out.name("reason", reason);
     write_forces(out, scene.world.forces);
     for (const Material& material : scene.world.materials) write_material(out, material);
     for (const Shape& shape : scene.world.shapes) write_shape(out, shape);
     for (std::uint32_t body = 0; body < scene.world.size(); ++body) write_body(out, scene.world, body);
-    for (const Room& room : scene.rooms) write_room(out, room);
+    for (const Room& room : scene.rooms) write_room(out, room, has_walls);
+}
+
+std::string capsule_text(const Scene& scene, const std::string& reason) {
+    PipelineConfig pipeline = scene.pipeline;
+    pipeline.step.time = pipeline.step.dt;  // `kolize run` takes this one step, if not told otherwise
+    Writer out;
+    out.line("# The step goes on from here to the same bits: kolize run THIS_FILE [--steps N]");
+    out.plain("schema", std::int64_t(1));
+    write_pipeline(out, pipeline, "");
+    write_render(out, scene.render, scene.world);
+    write_world(out, scene, reason);
     return out.text();
 }
 

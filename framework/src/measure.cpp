@@ -28,6 +28,11 @@ StageTime StageClock::summary(Phase phase) const {
     return time;
 }
 
+double StageClock::latest_us(Phase phase) const {
+    const std::vector<float>& samples = samples_us_[static_cast<std::size_t>(phase)];
+    return samples.empty() ? 0 : samples.back();
+}
+
 namespace {
 
 bool is_live(const World& world, std::uint32_t body) { return !world.is_static[body] && !world.removed[body]; }
@@ -47,8 +52,7 @@ void Measure::start(const World& world, const std::vector<Room>& rooms, std::uin
     for_live(world, [&](std::uint32_t body) {
         mass += 1 / world.inverse_mass[body];
         reference_ += world.position[body] / world.inverse_mass[body];
-        has_forces_ = has_forces_ || !force_on(world, body).isZero(0);
-        has_losses_ = has_losses_ || world.forces.drag > 0 || !world.constant_torque[body].isZero(0);
+        watch(world, body);
     });
     if (mass > 0) reference_ /= mass;
     initial_ = latest_ = totals(world);
@@ -57,6 +61,20 @@ void Measure::start(const World& world, const std::vector<Room>& rooms, std::uin
     open_.reserve(4 * world.size());
     next_.reserve(4 * world.size());
     set_scales(world);
+}
+
+void Measure::watch(const World& world, std::uint32_t body) {
+    has_forces_ = has_forces_ || !force_on(world, body).isZero(0);
+    has_losses_ = has_losses_ || world.forces.drag > 0 || !world.constant_torque[body].isZero(0);
+}
+
+// Forces may have come that were not there before: potential energy is counted on both sides of the change, or on none.
+void Measure::account_for(const World& world, const Totals& before) {
+    for_live(world, [&](std::uint32_t body) { watch(world, body); });
+    latest_ = totals(world);
+    exchange_.work += latest_.energy() - before.energy();
+    exchange_.impulse += latest_.momentum - before.momentum;
+    exchange_.angular_impulse += latest_.angular_momentum - before.angular_momentum;
 }
 
 Vec3 Measure::force_on(const World& world, std::uint32_t body) const {
@@ -232,6 +250,12 @@ void Measure::write(const World& world, RunResult& result) const {
     result.max_penetration_m = max_depth_;
     result.escaped = escaped_;
     result.stuck = stuck_;
+}
+
+Reading Measure::reading() const {
+    return {clock.latest_us(Phase::integrate), clock.latest_us(Phase::broadphase), clock.latest_us(Phase::narrowphase),
+            clock.latest_us(Phase::response),  clock.latest_us(Phase::step),       latest_.energy(),
+            energy_drift_,                     momentum_drift_,                    angular_drift_};
 }
 
 }  // namespace kolize

@@ -19,6 +19,7 @@ public:
     void add(Phase phase, Clock::duration time) { open_[static_cast<std::size_t>(phase)] += time; }
     void end_step();
     StageTime summary(Phase phase) const;
+    double latest_us(Phase phase) const;
 
 private:
     static constexpr auto phases = static_cast<std::size_t>(Phase::count);
@@ -57,6 +58,13 @@ public:
     void after_response(const World& world, const std::vector<Contact>& contacts, double dissipated_J);
     // J, of what is done to velocities besides motion and response.
     void add_work(double work) { exchange_.work += work; }
+    // Whatever `alter` does to the world counts as exchanged.
+    template <class Alter>
+    void change(const World& world, Alter&& alter) {
+        const Totals before = totals(world);
+        alter();
+        account_for(world, before);
+    }
     // Before body leaves the world.
     void before_removal(const World& world, std::uint32_t body);
     void end_step(const World& world, double dt);
@@ -66,9 +74,12 @@ public:
     void restore() { exchange_ = saved_; }
 
     void write(const World& world, RunResult& result) const;
+    Reading reading() const;
 
 private:
     Totals totals(const World& world) const;
+    void account_for(const World& world, const Totals& before);
+    void watch(const World& world, std::uint32_t body);
     void add_body(const World& world, std::uint32_t body, const BodyState& state, Totals& totals) const;
     Vec3 force_on(const World& world, std::uint32_t body) const;
     void set_scales(const World& world);

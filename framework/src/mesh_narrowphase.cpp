@@ -79,6 +79,26 @@ public:
         emit(pair);
     }
 
+    // The curves along which the surfaces of two closed meshes cross; a box is one too.
+    void cross(const Pair& bodies, std::vector<CrossingLine>& lines) {
+        const Shape &first = world_.shape_of(bodies.a), &second = world_.shape_of(bodies.b);
+        if (!first.mesh || !second.mesh || !first.mesh->closed || !second.mesh->closed) return;
+        require_finite_pose(world_, bodies.a);
+        require_finite_pose(world_, bodies.b);
+        const MeshPair pair = mesh_pair(bodies.a, bodies.b);
+        find_hits(pair);
+        work_.regions.clear();
+        contour_regions(pair, work_.triangles.hits, work_.contour, work_.regions);
+        const Transform to_world = world_.pose(bodies.a);
+        std::vector<std::uint32_t> loops;  // first segments, in the order of their numbers
+        for (const ContourSegment& s : work_.contour.segments) {
+            const auto known = std::find(loops.begin(), loops.end(), s.loop);
+            lines.push_back({bodies, static_cast<std::uint32_t>(known - loops.begin()), to_world * s.from.point,
+                             to_world * s.to.point});
+            if (known == loops.end()) loops.push_back(s.loop);
+        }
+    }
+
 private:
     // Shape kinds ascending: sphere, box, half-space, mesh. Regions: world axes about the centre of `a`.
     void collide_ordered(std::uint32_t a, std::uint32_t b) {
@@ -125,12 +145,7 @@ private:
     }
 
     void collide_meshes(std::uint32_t a, std::uint32_t b) {
-        const Mat3 rotation = world_.orientation[a].toRotationMatrix();
-        MeshPair pair{*world_.shape_of(a).mesh, *world_.shape_of(b).mesh, {}};
-        pair.b_to_a.rotation = rotation.transpose() * world_.orientation[b].toRotationMatrix();
-        pair.b_to_a.translation = rotation.transpose() * (world_.position[b] - world_.position[a]);
-        pair.shape_a = world_.shape[a];
-        pair.shape_b = world_.shape[b];
+        MeshPair pair = mesh_pair(a, b);
         pair.first_only = detail_ == Detail::overlap;
         pair.want_segments = averaged_ && !pair.first_only;
 
@@ -139,7 +154,17 @@ private:
             find_overlap(pair);
         else
             find_regions(pair, a, b);
-        rotate_all(rotation);
+        rotate_all(world_.orientation[a].toRotationMatrix());
+    }
+
+    MeshPair mesh_pair(std::uint32_t a, std::uint32_t b) const {
+        const Mat3 rotation = world_.orientation[a].toRotationMatrix();
+        MeshPair pair{*world_.shape_of(a).mesh, *world_.shape_of(b).mesh, {}};
+        pair.b_to_a.rotation = rotation.transpose() * world_.orientation[b].toRotationMatrix();
+        pair.b_to_a.translation = rotation.transpose() * (world_.position[b] - world_.position[a]);
+        pair.shape_a = world_.shape[a];
+        pair.shape_b = world_.shape[b];
+        return pair;
     }
 
     // In canonical order, each pair once.
@@ -271,6 +296,11 @@ void MeshNarrowphase::find_contacts(const NarrowphaseInput& input, Contacts& con
         contacts.triangle_tests += part.triangle_tests;
         contacts.triangle_hits += part.triangle_hits;
     }
+}
+
+void MeshNarrowphase::find_crossings(const NarrowphaseInput& input, std::vector<CrossingLine>& crossings) {
+    PairCollider collider(*this, input.world, *workspaces_.front());
+    for (const Pair& pair : input.pairs) collider.cross(pair, crossings);
 }
 
 }  // namespace kolize

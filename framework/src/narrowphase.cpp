@@ -13,6 +13,8 @@ void Narrowphase::find_touching(const NarrowphaseInput&, Contacts&) {
     throw std::logic_error("it does not find touching points");
 }
 
+void Narrowphase::find_crossings(const NarrowphaseInput&, std::vector<CrossingLine>&) {}
+
 double touch_distance(const World& world, std::uint32_t a, std::uint32_t b) {
     constexpr double of_size = 2e-14, of_rounding = 4 * std::numeric_limits<double>::epsilon();
     double size = 0, offset = 0;

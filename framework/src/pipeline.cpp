@@ -31,7 +31,11 @@ Pipeline::Pipeline(const Scene& scene, const PluginLibrary& plugins, Host& host,
       host_(host),
       integrator_name_(scene.pipeline.step.integrator),
       integrator_(make_integrator(scene.pipeline.step.integrator)),
-      first_step_(scene.capsule_step.value_or(0)) {
+      first_step_(scene.capsule_step.value_or(0)),
+      scene_bodies_(scene.world.size()),
+      rooms_(scene.rooms),
+      expected_steps_(expected_steps),
+      ledger_config_(scene.pipeline.ledger) {
     for (const ResponseRule& rule : scene.pipeline.responses)
         rules.push_back({&plugins.require(StageKind::response, rule.stage.plugin, rule.stage.where),
                          plugins.make<Response>(rule.stage, host),

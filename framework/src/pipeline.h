@@ -69,6 +69,16 @@ public:
     // Of a run from its beginning; a capsule's run begins later.
     std::uint64_t step_number() const { return first_step_ + measure.steps; }
 
+    // In pipeline_inputs.cpp: what is put in between two steps. Throws std::invalid_argument, before anything changes.
+    void put_in(const ForcesInput& input);
+    void put_in(const LoadInput& input);
+    void put_in(const PlaceInput& input);
+    void put_in(const RemoveInput& input);
+    // Goes on where another pipeline of the same scene has come to; the walls of the rooms are each pipeline's own.
+    void take_over(const Pipeline& before);
+
+    void find_crossings(std::vector<CrossingLine>& crossings) const;
+
     World world;
     std::vector<Pair> pairs;
     Contacts contacts;
@@ -86,6 +96,7 @@ public:
 private:
     static constexpr std::uint32_t no_rule = ~0u, no_row = ~0u;
 
+    void require_dynamic(std::uint32_t body) const;
     void negotiate(const PipelineConfig& config, const PluginLibrary& plugins);
     void use_bounding_spheres();
     void reserve();
@@ -119,6 +130,10 @@ private:
     std::string integrator_name_;
     std::unique_ptr<Integrator> integrator_;
     std::uint64_t first_step_ = 0;
+    std::size_t scene_bodies_;  // those after them are walls
+    std::vector<Room> rooms_;
+    std::uint64_t expected_steps_;
+    LedgerConfig ledger_config_;
     std::vector<std::uint32_t> rule_of_kinds_;  // kinds x kinds -> rule; no_rule where none fits
     std::vector<std::uint32_t> rows_;           // broadphase row -> body
     std::vector<std::uint32_t> row_of_;         // body -> broadphase row; no_row for a half-space or a removed body

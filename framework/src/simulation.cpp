@@ -37,20 +37,22 @@ struct StepStart {
 
 struct Simulation::State {
     State(const Scene& scene, const PluginLibrary& plugins, Host& host, std::uint64_t expected_steps)
-        : file(scene.file),
-          rooms(scene.rooms),
-          config(scene.pipeline),
+        : scene(scene),
+          plugins(plugins),
           host(host),
+          expected_steps(expected_steps),
           pipeline(scene, plugins, host, expected_steps),
-          stepping(make_stepping(config.step)),
-          keeps_steps(config.ledger.check) {
+          stepping(make_stepping(scene.pipeline.step)),
+          keeps_steps(scene.pipeline.ledger.check) {
         start.take(pipeline.world, pipeline.step_number());
     }
 
-    std::string file;
-    std::vector<Room> rooms;
-    PipelineConfig config;
+    const PipelineConfig& config() const { return scene.pipeline; }
+
+    Scene scene;  // as it was given, with the pipeline in force
+    const PluginLibrary& plugins;
     Host& host;
+    std::uint64_t expected_steps;
     Pipeline pipeline;
     std::unique_ptr<Stepping> stepping;
     bool keeps_steps;
@@ -64,7 +66,7 @@ Simulation::~Simulation() = default;
 
 void Simulation::step() {
     Pipeline& pipeline = state_->pipeline;
-    const double dt = state_->config.step.dt;
+    const double dt = state_->config().step.dt;
     if (state_->keeps_steps && !first_break()) state_->start.take(pipeline.world, pipeline.step_number());
     pipeline.begin_step(dt);
     const auto start = StageClock::Clock::now();
@@ -73,22 +75,54 @@ void Simulation::step() {
     pipeline.end_step(dt);
 }
 
+void Simulation::apply(const Input& input) {
+    if (const auto* other = std::get_if<PipelineInput>(&input)) return use(other->pipeline);
+    std::visit(
+        [&]<class T>(const T& one) {
+            if constexpr (!std::is_same_v<T, PipelineInput>) state_->pipeline.put_in(one);
+        },
+        input);
+}
+
+void Simulation::use(const PipelineConfig& pipeline) {
+    Scene scene = state_->scene;
+    scene.pipeline = pipeline;
+    auto next = std::make_unique<State>(scene, state_->plugins, state_->host, state_->expected_steps);
+    next->pipeline.take_over(state_->pipeline);
+    next->keeps_steps |= state_->keeps_steps;
+    next->start.take(next->pipeline.world, next->pipeline.step_number());
+    state_ = std::move(next);
+}
+
+std::uint64_t Simulation::step_number() const { return state_->pipeline.step_number(); }
+
+void Simulation::outline(Outline& outline) const {
+    if (state_->pipeline.broadphase_plugin->descriptor->capabilities.outline)
+        state_->pipeline.broadphase->outline(outline);
+}
+
+void Simulation::find_crossings(std::vector<CrossingLine>& crossings) const {
+    state_->pipeline.find_crossings(crossings);
+}
+
 const World& Simulation::world() const { return state_->pipeline.world; }
 const std::vector<Pair>& Simulation::pairs() const { return state_->pipeline.pairs; }
 const Contacts& Simulation::contacts() const { return state_->pipeline.contacts; }
 const std::vector<Event>& Simulation::events() const { return state_->pipeline.events; }
-const StepConfig& Simulation::step_config() const { return state_->config.step; }
+const StepConfig& Simulation::step_config() const { return state_->config().step; }
 std::string Simulation::walls() const { return to_string(state_->pipeline.walls); }
 
 RunResult Simulation::result() const {
     RunResult result;
-    result.scene = state_->file;
-    result.dt = state_->config.step.dt;
+    result.scene = state_->scene.file;
+    result.dt = state_->config().step.dt;
     result.threads = state_->host.threads();
     state_->pipeline.measure.write(state_->pipeline.world, result);
     result.state_hash = state_hash();
     return result;
 }
+
+Reading Simulation::reading() const { return state_->pipeline.measure.reading(); }
 
 namespace {
 
@@ -164,18 +198,24 @@ StageConfig in_force(const EffectiveStage& stage) {
 
 }  // namespace
 
+PipelineConfig Simulation::pipeline() const {
+    PipelineConfig config = state_->config();
+    config.broadphase = in_force(broadphase());
+    config.narrowphase = in_force(narrowphase());
+    const std::vector<EffectiveStage> stages = responses();
+    for (std::size_t i = 0; i < stages.size(); ++i) config.responses[i].stage = in_force(stages[i]);
+    return config;
+}
+
 Scene Simulation::capture() const {
     Scene scene;
-    scene.file = state_->file;
+    scene.file = state_->scene.file;
     scene.world = world();
-    scene.rooms = state_->rooms;
-    scene.pipeline = state_->config;
-    scene.pipeline.broadphase = in_force(broadphase());
-    scene.pipeline.narrowphase = in_force(narrowphase());
+    scene.rooms = state_->scene.rooms;
+    scene.pipeline = pipeline();
     if (!scene.rooms.empty()) scene.pipeline.walls = walls();
-    const std::vector<EffectiveStage> stages = responses();
-    for (std::size_t i = 0; i < stages.size(); ++i) scene.pipeline.responses[i].stage = in_force(stages[i]);
-    scene.capsule_step = state_->pipeline.step_number();
+    scene.capsule_step = step_number();
+    scene.render = state_->scene.render;
     return scene;
 }
 

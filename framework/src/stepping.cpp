@@ -56,4 +56,9 @@ std::unique_ptr<Stepping> make_stepping(const StepConfig& config) {
     throw std::invalid_argument("step.mode must be discrete, rollback, bisection or continuous, is " + config.mode);
 }
 
+const std::vector<std::string>& stepping_names() {
+    static const std::vector<std::string> names = {"discrete", "rollback", "bisection", "continuous"};
+    return names;
+}
+
 }  // namespace kolize

@@ -110,4 +110,4 @@ private:
 
 KOLIZE_PLUGIN(AngleSum, .name = "angle_sum", .summary = "triangle-triangle test by angle sums, the source thesis' own",
               .source = "Haines, Point in polygon strategies, Graphics Gems IV, 1994",
-              .capabilities = {.time_of_impact = true})
+              .capabilities = {.time_of_impact = true, .crossings = true})

@@ -71,4 +71,4 @@ private:
 }  // namespace
 
 KOLIZE_PLUGIN(Fcl, .name = "fcl", .summary = "meshes by the Flexible Collision Library (OBBRSS hierarchy)",
-              .source = "Pan, Chitta & Manocha, ICRA 2012", .capabilities = {.time_of_impact = true, .allocates = true})
+              .source = "Pan, Chitta & Manocha, ICRA 2012", .capabilities = {.time_of_impact = true, .allocates = true, .crossings = true})

@@ -102,4 +102,4 @@ private:
 
 KOLIZE_PLUGIN(Moller, .name = "moller",
               .summary = "exact triangle-triangle test by intervals on the planes' common line",
-              .source = "Moller, Journal of Graphics Tools 2(2), 1997", .capabilities = {.time_of_impact = true})
+              .source = "Moller, Journal of Graphics Tools 2(2), 1997", .capabilities = {.time_of_impact = true, .crossings = true})

@@ -76,10 +76,10 @@ public:
         studio_ = std::make_unique<Studio>(width, height, samples_);
     }
 
-    void prepare(const World& world, std::span<const Room> rooms) override {
+    void prepare(const World& world, const Scenery& scenery) override {
         studio_->context.make_current();
         studio_->bodies.prepare(world, crease_ / 180 * std::numbers::pi, colour_by_);
-        studio_->surfaces.prepare(world, rooms, pattern_size_);
+        studio_->surfaces.prepare(world, scenery.rooms, pattern_size_);
     }
 
     void draw(const Frame& frame) override {

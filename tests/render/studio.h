@@ -34,7 +34,7 @@ struct Studio {
         return world.add(body);
     }
     Image picture(double time = 0) {
-        renderer->prepare(world, rooms);
+        renderer->prepare(world, {rooms});
         renderer->draw({world, time, camera, lights, explosions});
         Image image;
         renderer->read_pixels(image);

@@ -9,9 +9,12 @@
 namespace kolize::cli {
 namespace {
 
-struct Size {
-    int width = 0, height = 0;
-};
+std::unique_ptr<PictureSink> make_sink(const FilmOptions& options, const Size& size) {
+    if (!options.frames.empty()) return make_png_folder(options.frames);
+    return make_video(options.video, size.width, size.height, options.fps);
+}
+
+}  // namespace
 
 Size parse_size(const std::string& text) {
     Size size;
@@ -25,12 +28,7 @@ Size parse_size(const std::string& text) {
     return size;
 }
 
-std::unique_ptr<PictureSink> make_sink(const FilmOptions& options, const Size& size) {
-    if (!options.frames.empty()) return make_png_folder(options.frames);
-    return make_video(options.video, size.width, size.height, options.fps);
-}
-
-}  // namespace
+void prepare(Renderer& renderer, const Scene& scene, const World& world) { renderer.prepare(world, {scene.rooms}); }
 
 void add_film_options(CLI::App& command, FilmOptions& options) {
     CLI::Option* frames = command.add_option("--frames", options.frames, "Draw pictures (PNG) into this new folder");
@@ -46,18 +44,19 @@ void add_film_options(CLI::App& command, FilmOptions& options) {
 }
 
 Film::Film(const FilmOptions& options, const Scene& scene, const Simulation& simulation, const PluginLibrary& plugins,
-           Host& host, std::uint64_t steps)
+           Host& host, std::uint64_t steps, Director director)
     : title_("renderer '" + scene.render.stage.plugin + "'"),
       renderer_(plugins.make<Renderer>(scene.render.stage, host)),
+      director_(std::move(director)),
       fps_(options.fps),
       dt_(scene.pipeline.step.dt),
       last_step_(static_cast<double>(steps)) {
     const Size size = parse_size(options.size);
-    camera_ = camera_of(scene, simulation.world(), static_cast<double>(size.width) / size.height);
-    lights_ = lights_of(scene, simulation.world());
+    shot_.camera = camera_of(scene, simulation.world(), static_cast<double>(size.width) / size.height);
+    shot_.lights = lights_of(scene, simulation.world());
     guarded([&] {
         renderer_->open(size.width, size.height);
-        renderer_->prepare(simulation.world(), scene.rooms);
+        prepare(*renderer_, scene, simulation.world());
     });
     sink_ = make_sink(options, size);
 }
@@ -73,26 +72,20 @@ void Film::guarded(Function&& function) const {
 }
 
 void Film::look(const Simulation& simulation) {
-    if (steps_ > 0) take_explosions(simulation);
+    if (steps_ > 0) take_explosions(simulation, static_cast<double>(steps_) * dt_, explosions_);
     constexpr double rounding = 1e-6;  // of a step: a picture that is due when a step ends shows that step
     const double end = std::min(static_cast<double>(steps_ + 1), last_step_ + 2 * rounding);
     const auto due = [&] { return static_cast<double>(pictures_) / (fps_ * dt_) + rounding; };
     const double now = static_cast<double>(steps_) * dt_;  // not later than a picture of it, but for rounding
-    while (due() < end) shoot(simulation.world(), std::max(now, static_cast<double>(pictures_++) / fps_));
+    while (due() < end) shoot(simulation, std::max(now, static_cast<double>(pictures_++) / fps_));
     ++steps_;
 }
 
-void Film::take_explosions(const Simulation& simulation) {
-    const World& world = simulation.world();
-    for (const Event& event : simulation.events())
-        if (event.kind == EventKind::explosion)
-            explosions_.push_back(
-                {event.position, world.shape_of(event.body).radius, static_cast<double>(steps_) * dt_});
-}
-
-void Film::shoot(const World& world, double time) {
+void Film::shoot(const Simulation& simulation, double time) {
+    if (director_) director_(simulation, time, shot_);
     guarded([&] {
-        renderer_->draw({world, time, camera_, lights_, explosions_});
+        renderer_->draw(
+            {simulation.world(), time, shot_.camera, shot_.lights, explosions_, shot_.lines, shot_.captions});
         renderer_->read_pixels(image_);
     });
     sink_->take(image_);

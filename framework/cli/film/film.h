@@ -8,6 +8,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <functional>
+
 namespace kolize::cli {
 
 struct FilmOptions {
@@ -21,13 +23,34 @@ struct FilmOptions {
 
 void add_film_options(CLI::App& command, FilmOptions& options);
 
+struct Size {
+    int width = 0, height = 0;  // pixels
+};
+
+// "1280x720". Throws Error.
+Size parse_size(const std::string& text);
+
+// What a picture shows besides the world and its explosions.
+struct Shot {
+    Camera camera;
+    std::vector<Light> lights;
+    std::vector<Line> lines;
+    std::vector<Caption> captions;
+};
+
+// Sets up the next picture, of so many seconds of simulated time; the shot is as it was left for the picture before.
+using Director = std::function<void(const Simulation& simulation, double time, Shot& shot)>;
+
+// Hands the renderer all of a scene that does not change from picture to picture.
+void prepare(Renderer& renderer, const Scene& scene, const World& world);
+
 // Reads the simulation and never changes it: a run ends in the same state with a film and without.
 class Film {
 public:
     // Of a run of so many steps. Draws nothing yet. Throws Error for a renderer that cannot be had, or for options that
     // do not go together.
     Film(const FilmOptions& options, const Scene& scene, const Simulation& simulation, const PluginLibrary& plugins,
-         Host& host, std::uint64_t steps);
+         Host& host, std::uint64_t steps, Director director = {});
 
     // The pictures that show the state as it stands: to be called before the first step and after each one. The
     // picture of time t shows the state after the last step that ended at t or before.
@@ -35,15 +58,14 @@ public:
     void finish() { sink_->finish(); }
 
 private:
-    void take_explosions(const Simulation& simulation);
-    void shoot(const World& world, double time);
+    void shoot(const Simulation& simulation, double time);
     template <class Function>
     void guarded(Function&& function) const;
 
     std::string title_;  // of the renderer, for messages
     StagePtr<Renderer> renderer_;
-    Camera camera_;
-    std::vector<Light> lights_;
+    Director director_;
+    Shot shot_;
     std::vector<Explosion> explosions_;
     double fps_;
     double dt_;

@@ -16,6 +16,9 @@ public:
     virtual void finish() = 0;  // after the last picture
 };
 
+// Throws Error; the file is whole or not there.
+void write_png(const Image& image, const std::filesystem::path& file);
+
 // frame_000000.png and so on in a folder, which is made with the first picture. Throws Error for a folder that holds
 // something already.
 std::unique_ptr<PictureSink> make_png_folder(const std::filesystem::path& folder);

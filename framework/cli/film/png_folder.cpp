@@ -25,14 +25,13 @@ public:
         const bool made = make_folder();
         char name[32];
         std::snprintf(name, sizeof name, "frame_%06d.png", count_++);
-        const fs::path file = folder_ / name, part = file.string() + ".part";
-        std::error_code error;
-        const std::string complaint = write(image, part);
-        if (complaint.empty()) fs::rename(part, file, error);
-        if (complaint.empty() && !error) return;
-        fs::remove(part, error);
-        if (made) fs::remove(folder_, error);
-        throw Error("cannot write '" + file.string() + "': " + (complaint.empty() ? error.message() : complaint));
+        try {
+            write_png(image, folder_ / name);
+        } catch (const Error&) {
+            std::error_code error;
+            if (made) fs::remove(folder_, error);
+            throw;
+        }
     }
 
     void finish() override {}
@@ -46,23 +45,28 @@ private:
         return made;
     }
 
-    // What went wrong, or "".
-    static std::string write(const Image& image, const fs::path& file) {
-        png_image png = {};
-        png.version = PNG_IMAGE_VERSION;
-        png.width = static_cast<png_uint_32>(image.width);
-        png.height = static_cast<png_uint_32>(image.height);
-        png.format = PNG_FORMAT_RGB;
-        png.flags = PNG_IMAGE_FLAG_FAST;  // a third of the time, files a tenth larger
-        const bool written = png_image_write_to_file(&png, file.c_str(), 0, image.pixels.data(), 0, nullptr);
-        return written ? "" : png.message;
-    }
-
     fs::path folder_;
     int count_ = 0;
 };
 
 }  // namespace
+
+void write_png(const Image& image, const fs::path& file) {
+    png_image png = {};
+    png.version = PNG_IMAGE_VERSION;
+    png.width = static_cast<png_uint_32>(image.width);
+    png.height = static_cast<png_uint_32>(image.height);
+    png.format = PNG_FORMAT_RGB;
+    png.flags = PNG_IMAGE_FLAG_FAST;  // a third of the time, files a tenth larger
+    const fs::path part = file.string() + ".part";
+    const bool written = png_image_write_to_file(&png, part.c_str(), 0, image.pixels.data(), 0, nullptr);
+    std::error_code error;
+    if (written) fs::rename(part, file, error);
+    if (written && !error) return;
+    const std::string complaint = written ? error.message() : png.message;
+    fs::remove(part, error);
+    throw Error("cannot write '" + file.string() + "': " + complaint);
+}
 
 std::unique_ptr<PictureSink> make_png_folder(const fs::path& folder) { return std::make_unique<PngFolder>(folder); }
 

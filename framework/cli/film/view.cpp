@@ -90,4 +90,10 @@ std::vector<Light> lights_of(const Scene& scene, const World& world) {
     return {key, fill};
 }
 
+void take_explosions(const Simulation& simulation, double time, std::vector<Explosion>& explosions) {
+    for (const Event& event : simulation.events())
+        if (event.kind == EventKind::explosion)
+            explosions.push_back({event.position, simulation.world().shape_of(event.body).radius, time});
+}
+
 }  // namespace kolize::cli

@@ -3,6 +3,7 @@
 
 #include <kolize/renderer.h>
 #include <kolize/scene.h>
+#include <kolize/simulation.h>
 
 namespace kolize::cli {
 
@@ -13,5 +14,8 @@ Camera camera_of(const Scene& scene, const World& world, double aspect);
 
 // [[render.light]], or two lights on either side of the scene.
 std::vector<Light> lights_of(const Scene& scene, const World& world);
+
+// Appends those of the last step, which ended at this time (s).
+void take_explosions(const Simulation& simulation, double time, std::vector<Explosion>& explosions);
 
 }  // namespace kolize::cli

@@ -26,6 +26,21 @@ struct BroadphaseInput {
     std::uint64_t generation = 0;
 };
 
+// How a broadphase divides space, for whoever looks on. World frame, m.
+struct Outline {
+    struct Box {
+        Aabb box;                 // flat along one axis: a piece of a plane
+        std::uint32_t level = 0;  // of a tree, the root being 0
+    };
+    struct Ball {
+        Vec3 center = Vec3::Zero();
+        double radius = 0;
+        std::uint32_t level = 0;
+    };
+    std::vector<Box> boxes;
+    std::vector<Ball> balls;
+};
+
 // Contract (held by the conformance suite for every plugin):
 // - conservative: every pair of overlapping closed boxes is reported, unless both rows are static;
 // - a pair whose boxes do not overlap may be reported; a pair of two static rows may not;
@@ -39,6 +54,10 @@ public:
 
     // Appends to `pairs`, which comes empty and keeps its capacity between steps.
     virtual void find_pairs(const BroadphaseInput& input, std::vector<Pair>& pairs) = 0;
+
+    // Appends how the last find_pairs divided space. Called only where the descriptor's capabilities have `outline`,
+    // and only if somebody looks on: find_pairs does nothing for it.
+    virtual void outline(Outline& outline) const;
 };
 
 // Throws std::invalid_argument naming the first row whose box is not finite or has min > max.

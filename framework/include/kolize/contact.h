@@ -28,8 +28,8 @@ struct Contact {
     Vec3 arm_a = Vec3::Zero();   // contact point minus the centre of mass of A, world axes, m
     Vec3 arm_b = Vec3::Zero();   // the same point minus the centre of mass of B, world axes, m
     // m, > 0 where bodies overlap. Detail `normal`: the longest chord of the region along its normal (of two convex
-    // primitives: how far B has to move along it to separate). `manifold`: the chord at this point. 0 where bodies touch
-    // at the time of impact. Of bodies that rest on each other see ResponseInput::settle.
+    // primitives: how far B has to move along it to separate). `manifold`: the chord at this point. 0 where bodies
+    // touch at the time of impact. Of bodies that rest on each other see ResponseInput::settle.
     double depth = 0;
     double impulse = 0;  // written by the response: normal impulse on B, N s, >= 0
 };
@@ -44,6 +44,14 @@ struct Contacts {
         rows.clear();
         triangle_tests = triangle_hits = 0;
     }
+};
+
+// A piece of the curve along which the surfaces of two bodies cross. World frame, m.
+struct CrossingLine {
+    Pair pair;
+    std::uint32_t loop = 0;  // numbers the closed curves of this pair from 0
+    Vec3 from = Vec3::Zero();
+    Vec3 to = Vec3::Zero();
 };
 
 }  // namespace kolize

@@ -63,6 +63,7 @@ public:
     void find_contacts(const NarrowphaseInput& input, Contacts& contacts) final;
     void find_impacts(const ImpactInput& input, std::span<double> times) final;
     void find_touching(const NarrowphaseInput& input, Contacts& contacts) final;
+    void find_crossings(const NarrowphaseInput& input, std::vector<CrossingLine>& crossings) final;
 
     // The triangles of two meshes that intersect, without contacts; the shapes are those prepared for. Clears nothing;
     // appends. Called by several threads at once, each with its own `hits`; `hits` may be in any order.

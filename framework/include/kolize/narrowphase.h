@@ -48,6 +48,10 @@ public:
     // depth 0; and points whose gap is no wider than input.reach, with depth = -gap (or nearer than that). Appends rows
     // in canonical order, each point a region of its own.
     virtual void find_touching(const NarrowphaseInput& input, Contacts& contacts);
+
+    // For whoever looks on, if the capabilities have `crossings`: where the surfaces of the pairs cross at the world's
+    // present poses, whatever their detail. Appends, pair by pair; pairs without closed meshes give nothing.
+    virtual void find_crossings(const NarrowphaseInput& input, std::vector<CrossingLine>& crossings);
 };
 
 // The gap (m) at which two bodies in motion count as touching: far below any length of the scene, far above the

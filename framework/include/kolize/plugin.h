@@ -17,7 +17,7 @@
 
 namespace kolize {
 
-inline constexpr std::uint32_t plugin_api = 3;  // raised when a stage contract changes
+inline constexpr std::uint32_t plugin_api = 4;  // raised when a stage contract changes
 
 constexpr std::uint64_t layout_hash();
 
@@ -47,6 +47,8 @@ struct Capabilities {
     bool allocates = false;         // narrowphase: calls allocate even when warm, because a library it uses does
     bool friction = false;          // response: models friction; where none does, the friction of a scene has no effect
     bool bounding_spheres = false;  // response: treats the dynamic bodies that only it serves as their bounding spheres
+    const char* outline = nullptr;  // broadphase: what outline() gives: "cells", "planes", "spheres"
+    bool crossings = false;         // narrowphase: find_crossings() gives where surfaces cross
 };
 
 struct PluginDescriptor {
@@ -83,6 +85,13 @@ constexpr std::uint64_t layout_hash() {
                                sizeof(Light),
                                sizeof(Explosion),
                                sizeof(Image),
+                               sizeof(Line),
+                               sizeof(Caption),
+                               sizeof(Skin),
+                               sizeof(WindowEvent),
+                               sizeof(PanelItem),
+                               sizeof(Outline),
+                               sizeof(CrossingLine),
                                sizeof(Parameter),
                                sizeof(Value),
                                sizeof(PluginDescriptor),

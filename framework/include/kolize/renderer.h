@@ -3,11 +3,14 @@
 
 #include <kolize/room.h>
 #include <kolize/stage.h>
+#include <kolize/window.h>
 #include <kolize/world.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace kolize {
@@ -41,6 +44,24 @@ struct Explosion {
     double start = 0;              // simulated time, s
 };
 
+using Rgba = std::array<std::uint8_t, 4>;  // red, green, blue in sRGB, and the opacity
+
+// One pixel wide or little more; seen through what stands before it, but fainter. World frame, m.
+struct Line {
+    Vec3 from = Vec3::Zero();
+    Vec3 to = Vec3::Zero();
+    Rgba colour = {255, 255, 255, 255};
+};
+
+// Text over the picture; it may have several lines. Lengths are shares of the picture's width (x) and height.
+struct Caption {
+    std::string text;
+    double x = 0, y = 0;                // of the anchor, from the left and from the top
+    double anchor_x = 0, anchor_y = 0;  // the anchor in the text: 0 its left or upper border, 1 its right or lower one
+    double height = 0.03;               // of a line
+    Rgba colour = {255, 255, 255, 255};
+};
+
 // All that one picture shows.
 struct Frame {
     const World& world;
@@ -48,6 +69,8 @@ struct Frame {
     Camera camera;
     std::span<const Light> lights;  // a renderer may leave out all but the first eight
     std::span<const Explosion> explosions;
+    std::span<const Line> lines = {};
+    std::span<const Caption> captions = {};
 };
 
 // Three bytes a pixel (red, green, blue; sRGB), row by row from the top.
@@ -57,11 +80,25 @@ struct Image {
     std::vector<std::uint8_t> pixels;
 };
 
+// A picture that covers the bodies of one shape, laid on along the three axes of the body frame.
+struct Skin {
+    std::uint32_t shape = 0;
+    Image image;
+    double side = 1;  // m, of the picture on the body; it repeats
+};
+
+// What does not change from frame to frame, besides the world's shapes.
+struct Scenery {
+    std::span<const Room> rooms;
+    std::span<const Skin> skins = {};
+};
+
 // Contract (held by the conformance suite for every plugin):
 // - the same frame gives the same bytes on the same machine, whatever was drawn before;
 // - rooms are drawn by their inner sides only, and room walls (is_room_wall) not as bodies;
 // - removed bodies, and bodies whose pose is not finite, are not drawn.
-// Members are called by one thread and in this order: open, prepare, then draw and read_pixels as often as wanted.
+// Members are called by one thread and in this order: open or open_window, prepare, then draw and read_pixels as often
+// as wanted.
 class KOLIZE_API Renderer : public Stage {
 public:
     static constexpr StageKind kind = StageKind::render;
@@ -69,9 +106,13 @@ public:
     // Makes a picture of this size, in pixels, to draw on; needs no display. Throws std::runtime_error with one
     // sentence where the machine cannot.
     virtual void open(int width, int height) = 0;
-    // Takes over the shapes of this world and the rooms; may be called again. Frames drawn later are of this world, or
-    // of one with the same bodies in other places.
-    virtual void prepare(const World& world, std::span<const Room> rooms) = 0;
+    // The same in a window, whose size in pixels the pictures have from then on; they are the same pictures. The window
+    // lives as long as the renderer. Throws std::runtime_error with one sentence where there is no display, or where
+    // the renderer opens no windows (as here).
+    virtual Window& open_window(const std::string& title, int width, int height);
+    // Takes over the shapes of this world and the scenery; may be called again. Frames drawn later are of this world,
+    // or of one with the same bodies in other places.
+    virtual void prepare(const World& world, const Scenery& scenery) = 0;
     virtual void draw(const Frame& frame) = 0;
     // The frame drawn last. Resizes the image as needed.
     virtual void read_pixels(Image& image) = 0;

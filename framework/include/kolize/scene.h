@@ -29,6 +29,8 @@ struct StepConfig {
     SourceLocation where = {};  // of the mode
 };
 
+KOLIZE_API const std::vector<std::string>& stepping_names();
+
 // [ledger]: what each stage may at most get wrong, see docs/ledger.md.
 struct LedgerConfig {
     bool check = false;
@@ -55,11 +57,20 @@ struct CameraConfig {
     double field_of_view = 0.9;  // vertical, rad
 };
 
+// [[render.texture]]: the PNG file is read by whoever draws.
+struct TextureConfig {
+    std::uint32_t shape = 0;  // into World::shapes
+    std::filesystem::path file;
+    double side = 1;            // m
+    SourceLocation where = {};  // of the file's name
+};
+
 // [render]: how the scene is shown, by whatever draws it.
 struct RenderConfig {
     StageConfig stage;
     std::optional<CameraConfig> camera;  // none: chosen to show the whole scene
     std::vector<Light> lights;           // [[render.light]]; empty: chosen to light the whole scene
+    std::vector<TextureConfig> textures;
 };
 
 struct Scene {

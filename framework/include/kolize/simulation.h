@@ -1,6 +1,7 @@
 // One scene run through one pipeline: the ring integrate -> broadphase -> narrowphase -> response, measured.
 #pragma once
 
+#include <kolize/input.h>
 #include <kolize/integrator.h>
 #include <kolize/mesh_narrowphase.h>
 #include <kolize/scene.h>
@@ -37,6 +38,13 @@ struct RunResult {
     std::uint64_t state_hash = 0;
 };
 
+// What can be read after every step at no cost.
+struct Reading {
+    double integrate_us = 0, broadphase_us = 0, narrowphase_us = 0, response_us = 0, step_us = 0;  // of the last step
+    double energy_J = 0;
+    double energy_drift = 0, momentum_drift = 0, angular_momentum_drift = 0;  // largest so far, as in RunResult
+};
+
 // A stage of the running pipeline as it is in force, for the echo in results.
 struct EffectiveStage {
     std::string plugin;
@@ -47,9 +55,9 @@ struct EffectiveStage {
 // What a stage did that it may not do: the first entry of the ledger that does not balance.
 struct LedgerBreak {
     std::uint64_t step = 0;
-    double time = 0;     // simulated, s, at which the step began
-    std::string stage;   // "integrator", "broadphase", "narrowphase", "response", "stepping"
-    std::string plugin;  // or the integrator's or the stepping's name
+    double time = 0;                    // simulated, s, at which the step began
+    std::string stage;                  // "integrator", "broadphase", "narrowphase", "response", "stepping"
+    std::string plugin;                 // or the integrator's or the stepping's name
     std::vector<std::uint32_t> bodies;  // a body, or the pair
     std::string quantity;               // "energy", "momentum", "position", ...
     std::string unit;
@@ -64,12 +72,18 @@ class KOLIZE_API Simulation {
 public:
     // Makes the stages and negotiates: throws Error, before any step, in a sentence that names a plugin that would do,
     // if a response needs more than the narrowphase gives or a shape is not taken. `expected_steps` sizes the sample
-    // buffers.
+    // buffers. Plugins and host have to outlive the simulation.
     Simulation(const Scene& scene, const PluginLibrary& plugins, Host& host, std::uint64_t expected_steps);
     ~Simulation();
 
     // Advances by one dt. A failing stage throws std::runtime_error that names stage, plugin, step and the pair.
     void step();
+
+    // Between two steps. Throws std::invalid_argument for a body that is not there or is static, or for what is not
+    // finite, and what the constructor throws for a pipeline; the simulation then goes on as if nothing had been asked.
+    void apply(const Input& input);
+    // Of the step that comes next, from the beginning of the run; a capsule's run begins later.
+    std::uint64_t step_number() const;
 
     // The ledger's first complaint so far; none where [ledger] is off. The run goes on after it.
     const std::optional<LedgerBreak>& first_break() const;
@@ -85,14 +99,23 @@ public:
     const Contacts& contacts() const;          // of the last step (bisection, continuous: of its last impact)
     const std::vector<Event>& events() const;  // of the last step
     RunResult result() const;
+    Reading reading() const;
     std::uint64_t state_hash() const;  // FNV-1a over the bits of all bodies' state
     EffectiveStage broadphase() const;
     EffectiveStage narrowphase() const;
     std::vector<EffectiveStage> responses() const;
     const StepConfig& step_config() const;
-    std::string walls() const;  // what rooms were made of: half_space, box or mesh
+    PipelineConfig pipeline() const;  // with all parameters in force
+    std::string walls() const;        // what rooms were made of: half_space, box or mesh
+
+    // For whoever looks on; nothing is computed for these unless they are called. Nothing where the plugin has no such
+    // capability.
+    void outline(Outline& outline) const;                             // of the last step's broadphase
+    void find_crossings(std::vector<CrossingLine>& crossings) const;  // of the last step's pairs, at the present poses
 
 private:
+    void use(const PipelineConfig& pipeline);
+
     struct State;
     std::unique_ptr<State> state_;
 };

@@ -14,8 +14,8 @@ namespace {
 constexpr int width = 64, height = 48;
 
 // A ball, a box, a tetrahedron and a floor, seen from above.
-struct Scenery {
-    Scenery() {
+struct Tableau {
+    Tableau() {
         world.materials.emplace_back();
         world.shapes = {make_sphere("ball", 0.5), make_box("box", {0.5, 0.4, 0.3}), make_mesh("tetrahedron", solid()),
                         make_half_space("floor", Vec3::UnitY(), 0)};
@@ -58,7 +58,7 @@ public:
     }
 
     void gives_whole_pictures() {
-        const Image image = picture(Scenery());
+        const Image image = picture(Tableau());
         if (image.width != width || image.height != height || image.pixels.size() != 3 * width * height)
             throw Violation("a picture of 64 x 48 pixels has not 64 x 48 times 3 bytes");
         if (std::all_of(image.pixels.begin(), image.pixels.end(), [&](auto byte) { return byte == image.pixels[0]; }))
@@ -66,22 +66,22 @@ public:
     }
 
     void same_bytes_again() {
-        Scenery scenery;
-        const Image first = picture(scenery);
-        if (redrawn(scenery).pixels != first.pixels) throw Violation("the same frame drawn twice gives other bytes");
-        const Vec3 place = scenery.world.position[0];
-        scenery.world.position[0] += Vec3(0, 0.7, 0);
-        if (redrawn(scenery).pixels == first.pixels) throw Violation("a body moves by 0.7 m and the picture stays");
-        scenery.world.position[0] = place;
-        if (redrawn(scenery).pixels != first.pixels)
+        Tableau tableau;
+        const Image first = picture(tableau);
+        if (redrawn(tableau).pixels != first.pixels) throw Violation("the same frame drawn twice gives other bytes");
+        const Vec3 place = tableau.world.position[0];
+        tableau.world.position[0] += Vec3(0, 0.7, 0);
+        if (redrawn(tableau).pixels == first.pixels) throw Violation("a body moves by 0.7 m and the picture stays");
+        tableau.world.position[0] = place;
+        if (redrawn(tableau).pixels != first.pixels)
             throw Violation("the same frame gives other bytes after another one was drawn");
     }
 
     void does_not_write_the_world() {
-        Scenery scenery;
-        const World before = scenery.world;
-        picture(scenery);
-        const World& after = scenery.world;
+        Tableau tableau;
+        const World before = tableau.world;
+        picture(tableau);
+        const World& after = tableau.world;
         if (!same_bits(before.position, after.position) || !same_bits(before.velocity, after.velocity) ||
             !same_bits(before.angular_velocity, after.angular_velocity) || before.removed != after.removed)
             throw Violation("drawing changes the state of a body");
@@ -91,47 +91,47 @@ public:
     }
 
     void leaves_out_what_is_not_there() {
-        Scenery scenery;
-        scenery.world.removed[0] = 1;
-        const Image without = picture(scenery);
-        scenery.world.position[0] += Vec3(0, 0.7, 0);
-        if (redrawn(scenery).pixels != without.pixels) throw Violation("a removed body is drawn");
-        scenery.world.removed[0] = 0;
-        scenery.world.position[0] = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-        if (redrawn(scenery).pixels != without.pixels) throw Violation("a body at a place that is no number is drawn");
+        Tableau tableau;
+        tableau.world.removed[0] = 1;
+        const Image without = picture(tableau);
+        tableau.world.position[0] += Vec3(0, 0.7, 0);
+        if (redrawn(tableau).pixels != without.pixels) throw Violation("a removed body is drawn");
+        tableau.world.removed[0] = 0;
+        tableau.world.position[0] = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+        if (redrawn(tableau).pixels != without.pixels) throw Violation("a body at a place that is no number is drawn");
     }
 
     void takes_another_world() {
-        const Image first = picture(Scenery());
-        Scenery empty;
+        const Image first = picture(Tableau());
+        Tableau empty;
         empty.world = World();
         const Image nothing = picture(empty);
         if (nothing.pixels == first.pixels) throw Violation("an empty world looks like one of four bodies");
-        if (picture(Scenery()).pixels != first.pixels)
+        if (picture(Tableau()).pixels != first.pixels)
             throw Violation("a world looks otherwise after another one was prepared");
     }
 
     // Seen from outside, a wall that hides nothing is one that is drawn from inside only.
     void rooms_from_inside() {
-        Scenery scenery;
-        const Image outside = picture(scenery);
+        Tableau tableau;
+        const Image outside = picture(tableau);
         Room room{{-4, -1, -4}, {4, 4, 4}};
         room.open = {true, true, true, true, true, false};  // only the wall between camera and bodies
-        scenery.rooms = {room};
-        if (picture(scenery).pixels != outside.pixels) throw Violation("a room's wall is drawn from its outer side");
-        scenery.rooms[0].open = {};
-        if (picture(scenery).pixels == outside.pixels) throw Violation("a room's inner sides are not drawn");
+        tableau.rooms = {room};
+        if (picture(tableau).pixels != outside.pixels) throw Violation("a room's wall is drawn from its outer side");
+        tableau.rooms[0].open = {};
+        if (picture(tableau).pixels == outside.pixels) throw Violation("a room's inner sides are not drawn");
     }
 
 private:
-    Image picture(const Scenery& scenery) {
-        renderer_->prepare(scenery.world, scenery.rooms);
-        return redrawn(scenery);
+    Image picture(const Tableau& tableau) {
+        renderer_->prepare(tableau.world, {tableau.rooms});
+        return redrawn(tableau);
     }
 
-    Image redrawn(const Scenery& scenery) {
+    Image redrawn(const Tableau& tableau) {
         Image image;
-        renderer_->draw(scenery.frame());
+        renderer_->draw(tableau.frame());
         renderer_->read_pixels(image);
         return image;
     }

@@ -116,14 +116,18 @@ void read_body(const toml::table& table, World& world) {
     reader.finish();
 }
 
-// Its walls are bodies; what is left of it says who has escaped.
-Room read_room(const toml::table& table) {
+// Where its walls are bodies already, what is left of it says who has escaped.
+Room read_room(const toml::table& table, bool has_walls, const World& world) {
     TableReader reader(table, "[[capsule.room]]");
     ExactNumbers exact(reader);
     Room room;
     room.min = exact.vector("min");
     room.max = exact.vector("max");
     room.open = read_open_sides(reader);
+    if (!has_walls) {
+        room.thickness = exact.number("thickness", positive);
+        room.material = read_index(reader, "material", world.materials.size());
+    }
     if (!(room.min.array() < room.max.array()).all()) reader.refuse("max", "must be greater than min on every axis");
     reader.finish();
     return room;
@@ -136,13 +140,16 @@ void refuse_world(const toml::table& config) {
                         std::string("a capsule has its world in [capsule], and no table '") + other + "'");
 }
 
-std::uint64_t read_head(const toml::table& capsule) {
+// Nothing for a scene that has not begun: its rooms are given walls yet.
+std::optional<std::uint64_t> read_head(const toml::table& capsule) {
     TableReader reader(capsule, "[capsule]");
     reader.require("step");
-    const std::int64_t step = reader.integer("step", 0, {0, 1e15});
+    const bool has_walls = reader.boolean("walls", true);
+    const std::int64_t step = reader.integer("step", 0, {0, has_walls ? 1e15 : 0});
     for (const char* told : {"scene", "reason"}) reader.text(told, "");
     for (const char* part : {"forces", "material", "shape", "body", "room"}) reader.has(part);
     reader.finish();
+    if (!has_walls) return std::nullopt;
     return static_cast<std::uint64_t>(step);
 }
 
@@ -157,7 +164,8 @@ void read_capsule(const toml::table& config, Scene& scene) {
     for (const toml::table* part : tables(capsule, "material")) world.materials.push_back(read_material(*part));
     for (const toml::table* part : tables(capsule, "shape")) world.shapes.push_back(read_shape(*part));
     for (const toml::table* part : tables(capsule, "body")) read_body(*part, world);
-    for (const toml::table* part : tables(capsule, "room")) scene.rooms.push_back(read_room(*part));
+    for (const toml::table* part : tables(capsule, "room"))
+        scene.rooms.push_back(read_room(*part, scene.capsule_step.has_value(), world));
 }
 
 }  // namespace kolize::config

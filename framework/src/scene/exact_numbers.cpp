@@ -36,7 +36,9 @@ std::string wanted(const Range& range) {
     return range.max < infinity ? least + " and at most " + to_string(Value(range.max)) : least;
 }
 
-bool parse(std::string_view word, double& value) {
+}  // namespace
+
+bool parse_exact(std::string_view word, double& value) {
     const bool negative = word.starts_with('-');
     const std::string_view size = word.substr(negative);
     const bool is_hex = size.starts_with("0x") || size.starts_with("0X");
@@ -46,8 +48,6 @@ bool parse(std::string_view word, double& value) {
     if (negative) value = -value;
     return error == std::errc() && end == digits.data() + digits.size() && !digits.starts_with('-');
 }
-
-}  // namespace
 
 std::vector<double> ExactNumbers::numbers(const std::string& key, const Range& range) {
     const toml::node& node = reader_.require(key);
@@ -62,7 +62,7 @@ std::vector<double> ExactNumbers::numbers(const std::string& key, const Range& r
             throw Error(where, key + " " + what + ", is " + std::string(words.word().substr(0, 40)));
         };
         double value = 0;
-        if (!parse(words.word(), value)) refuse("must be made of numbers such as 0x1.8p+1");
+        if (!parse_exact(words.word(), value)) refuse("must be made of numbers such as 0x1.8p+1");
         if (!std::isfinite(value)) refuse("must be finite");
         if (value < range.min || value > range.max || (range.above_min && value == range.min))
             refuse("must be " + wanted(range));

@@ -5,6 +5,9 @@
 
 namespace kolize::config {
 
+// Reads one such number; false if the word is none.
+bool parse_exact(std::string_view word, double& value);
+
 // All members throw Error with the line of the number that is wrong.
 class ExactNumbers {
 public:

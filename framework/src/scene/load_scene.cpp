@@ -9,7 +9,7 @@ using namespace config;
 
 const std::vector<std::string> scene_tables = {"schema", "world",  "step",       "material",    "shape",
                                                "body",   "room",   "broadphase", "narrowphase", "response",
-                                               "ledger", "render", "capsule"};
+                                               "ledger", "render", "capsule",    "recording"};
 
 void require_known_tables(const toml::table& config) {
     for (const auto& [key, node] : config) {
@@ -75,8 +75,10 @@ std::vector<std::string> frictionless_materials(const Scene& scene, const Plugin
 
 }  // namespace
 
-Scene load_scene(const std::filesystem::path& file, const SceneOptions& options, const PluginLibrary& plugins) {
-    const toml::table config = merged_config(file, options, plugins);
+namespace {
+
+Scene read_scene(const toml::table& config, const std::filesystem::path& file, const SceneOptions& options,
+                 const PluginLibrary& plugins) {
     Scene scene;
     scene.file = file.string();
     scene.pipeline = read_pipeline(config, options.defaults);
@@ -84,6 +86,26 @@ Scene load_scene(const std::filesystem::path& file, const SceneOptions& options,
     scene.render = read_render(config, options.defaults, scene.world);
     for (std::string& warning : frictionless_materials(scene, plugins)) scene.warnings.push_back(std::move(warning));
     return scene;
+}
+
+}  // namespace
+
+Scene load_scene(const std::filesystem::path& file, const SceneOptions& options, const PluginLibrary& plugins) {
+    const toml::table config = merged_config(file, options, plugins);
+    if (const toml::node* recording = config.get("recording"))
+        throw Error(location(*recording), "this is a recording, which is played with --replay");
+    return read_scene(config, file, options, plugins);
+}
+
+Recording load_recording(const std::filesystem::path& file, const SceneOptions& options, const PluginLibrary& plugins) {
+    const toml::table config = merged_config(file, options, plugins);
+    if (!config.contains("recording") || !config.contains("capsule"))
+        throw Error(SourceLocation{file.string()},
+                    "this is no recording: it has no tables [capsule] and [recording]; kolize run --record makes one");
+    Recording recording;
+    recording.start = read_scene(config, file, options, plugins);
+    read_recording(config, options.defaults, recording);
+    return recording;
 }
 
 }  // namespace kolize

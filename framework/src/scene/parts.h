@@ -3,6 +3,8 @@
 
 #include "table_reader.h"
 
+#include <kolize/recording.h>
+
 #include <map>
 
 namespace kolize::config {
@@ -41,6 +43,9 @@ std::array<bool, 6> read_open_sides(TableReader& reader);
 
 // [capsule], which stands in the place of all of these: world, rooms and the number of the step.
 void read_capsule(const toml::table& config, Scene& scene);
+
+// [recording], without the scene that it begins with.
+void read_recording(const toml::table& config, const PluginDefaults& defaults, Recording& recording);
 
 // [render]; lights may name bodies of the world.
 RenderConfig read_render(const toml::table& config, const PluginDefaults& defaults, const World& world);

@@ -18,11 +18,10 @@ Value scalar(const std::string& key, const toml::node& node) {
 }
 
 StepConfig read_step(const toml::table& config) {
-    static const std::vector<std::string> modes = {"discrete", "rollback", "bisection", "continuous"};
     TableReader reader(table(config, "step"), "[step]");
     StepConfig step;
     step.dt = reader.number("dt", step.dt, positive);
-    step.mode = reader.choice("mode", step.mode, modes);
+    step.mode = reader.choice("mode", step.mode, stepping_names());
     step.where = reader.where("mode");
     step.integrator = reader.choice("integrator", step.integrator, integrator_names());
     step.tolerance = reader.number("tolerance", step.tolerance, {0, 1, true});
