@@ -68,7 +68,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("--frames draws the state of the last step at each picture's time, the same bytes every time",
+TEST_CASE("run --frames draws the state of the last step at each picture's time, the same bytes every time",
           "[render][cli]") {
     const Shell shell;
     shell.folder.write("scene.toml", flight);
@@ -180,7 +180,7 @@ TEST_CASE("A machine without EGL is told so in one sentence", "[render][cli]") {
     CHECK_FALSE(std::filesystem::exists(shell.folder.path() / "f"));
 }
 
-TEST_CASE("--video writes a film and nothing beside it", "[render][cli]") {
+TEST_CASE("run --video writes a film and nothing beside it", "[render][cli]") {
     const Shell shell;
     shell.folder.write("scene.toml", flight);
     const std::string film = "run scene.toml --video film.mp4 --size 64x48 --fps 10";
