@@ -1,8 +1,30 @@
 #include "context.h"
 
+#include <epoxy/egl.h>
 #include <stdexcept>
+#include <string>
 
 namespace kolize::gl {
+
+namespace {
+
+Context* current = nullptr;
+
+}  // namespace
+
+void Context::make_current() {
+    if (current && current != this) current->release();
+    current = nullptr;
+    acquire();
+    current = this;
+}
+
+void Context::let_go() {
+    if (current != this) return;
+    release();
+    current = nullptr;
+}
+
 namespace {
 
 [[noreturn]] void refuse(const char* reason) {
@@ -30,18 +52,30 @@ EGLContext make_context(EGLDisplay display) {
     return context;
 }
 
+// The EGL display is shared by the whole process and stays open: closing it would end the other contexts too.
+class HeadlessContext final : public Context {
+public:
+    HeadlessContext() : display_(open_display()), context_(make_context(display_)) { make_current(); }
+    HeadlessContext(const HeadlessContext&) = delete;
+    HeadlessContext& operator=(const HeadlessContext&) = delete;
+    ~HeadlessContext() override {
+        let_go();
+        eglDestroyContext(display_, context_);
+    }
+
+private:
+    void acquire() override {
+        if (!eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
+            refuse("EGL cannot make its context current");
+    }
+    void release() override { eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
+
+    EGLDisplay display_;
+    EGLContext context_;
+};
+
 }  // namespace
 
-Context::Context() : display_(open_display()), context_(make_context(display_)) { make_current(); }
-
-Context::~Context() {
-    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-    eglDestroyContext(display_, context_);
-}
-
-void Context::make_current() {
-    if (!eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
-        refuse("EGL cannot make its context current");
-}
+std::unique_ptr<Context> make_headless_context() { return std::make_unique<HeadlessContext>(); }
 
 }  // namespace kolize::gl

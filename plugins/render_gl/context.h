@@ -1,24 +1,27 @@
-// An OpenGL 3.3 core context that needs no display: EGL on Mesa's surfaceless platform.
+// OpenGL 3.3 core contexts: without a display, and of a window.
 #pragma once
 
-#include <epoxy/egl.h>
+#include <memory>
 
 namespace kolize::gl {
 
-// The EGL display is shared by the whole process and stays open: closing it would end the other contexts too.
+// Of one thread. Those of different kinds cannot take each other's place by themselves: the old one is let go first.
 class Context {
 public:
-    // Makes the new context current. Throws std::runtime_error with one sentence where this machine has no such thing.
-    Context();
-    Context(const Context&) = delete;
-    Context& operator=(const Context&) = delete;
-    ~Context();
-
+    virtual ~Context() = default;
     void make_current();
 
+protected:
+    // To be called by the destructor, before the context is gone.
+    void let_go();
+
 private:
-    EGLDisplay display_ = EGL_NO_DISPLAY;
-    EGLContext context_ = EGL_NO_CONTEXT;
+    virtual void acquire() = 0;
+    virtual void release() = 0;
 };
+
+// EGL on Mesa's surfaceless platform; current when it is made. Throws std::runtime_error with one sentence where this
+// machine has no such thing.
+std::unique_ptr<Context> make_headless_context();
 
 }  // namespace kolize::gl

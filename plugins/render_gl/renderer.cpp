@@ -1,4 +1,5 @@
-// Renderer: OpenGL 3.3 core on an image in memory, by libepoxy and EGL; needs neither a display nor a graphics card.
+// Renderer: OpenGL 3.3 core on an image in memory, by libepoxy and EGL, which needs neither a display nor a graphics
+// card; or in a window, by GLFW, with a panel by Dear ImGui.
 //
 // Source: Blinn-Phong shading (Blinn 1977); billboards as in Akenine-Moeller, Haines and Hoffman, Real-Time Rendering,
 // 2018, 13.6. Bodies of one shape are drawn by one instanced call, so ten thousand cost a few calls only.
@@ -7,8 +8,11 @@
 #include "billboards.h"
 #include "bodies.h"
 #include "context.h"
+#include "lines.h"
 #include "surfaces.h"
 #include "target.h"
+#include "text.h"
+#include "window.h"
 
 #include <kolize/plugin.h>
 
@@ -22,14 +26,39 @@ constexpr float background[3] = {0.018f, 0.021f, 0.028f};
 
 // All that lives in one context; the context goes last.
 struct Studio {
-    Studio(int width, int height, int samples) : target(width, height, samples) {}
+    Studio(std::unique_ptr<Context> made, int width, int height, int samples)
+        : context(std::move(made)), target(width, height, samples) {}
 
-    Context context;
+    std::unique_ptr<Context> context;
     Target target;
     Lighting lighting;
     Bodies bodies;
     Surfaces surfaces;
     Billboards billboards;
+    Lines lines;
+    Text text;
+};
+
+// The window that the studio's pictures are shown in. Pictures take its size.
+class StudioWindow final : public Window {
+public:
+    StudioWindow(Studio& studio, GlfwWindow& window, int samples)
+        : studio_(studio), window_(window), samples_(samples) {}
+
+    int width() const override { return window_.width(); }
+    int height() const override { return window_.height(); }
+    void poll(std::vector<WindowEvent>& events) override {
+        window_.poll(events);
+        if (width() == studio_.target.width() && height() == studio_.target.height()) return;
+        window_.make_current();
+        studio_.target = Target(width(), height(), samples_);
+    }
+    void present(Panel* panel) override { window_.show(studio_.target, panel); }
+
+private:
+    Studio& studio_;
+    GlfwWindow& window_;
+    int samples_;
 };
 
 class GlRenderer final : public Renderer {
@@ -73,17 +102,25 @@ public:
 
     void open(int width, int height) override {
         close();
-        studio_ = std::make_unique<Studio>(width, height, samples_);
+        studio_ = std::make_unique<Studio>(make_headless_context(), width, height, samples_);
+    }
+
+    Window& open_window(const std::string& title, int width, int height) override {
+        close();
+        auto window = std::make_unique<GlfwWindow>(title, width, height);
+        GlfwWindow& opened = *window;
+        studio_ = std::make_unique<Studio>(std::move(window), opened.width(), opened.height(), samples_);
+        return window_.emplace(*studio_, opened, samples_);
     }
 
     void prepare(const World& world, const Scenery& scenery) override {
-        studio_->context.make_current();
+        studio_->context->make_current();
         studio_->bodies.prepare(world, crease_ / 180 * std::numbers::pi, colour_by_);
         studio_->surfaces.prepare(world, scenery.rooms, pattern_size_);
     }
 
     void draw(const Frame& frame) override {
-        studio_->context.make_current();
+        studio_->context->make_current();
         studio_->target.clear(background);
         glEnable(GL_DEPTH_TEST);
         glEnable(GL_CULL_FACE);
@@ -92,17 +129,20 @@ public:
         studio_->bodies.draw(frame.world, view, studio_->target.height(), static_cast<float>(gloss_));
         studio_->surfaces.draw(frame.world, view, pattern_, background);
         studio_->billboards.draw(frame, view, style());
+        studio_->lines.draw(frame.lines, view, studio_->target.width(), studio_->target.height());
+        studio_->text.draw(frame.captions, studio_->target.width(), studio_->target.height());
     }
 
     void read_pixels(Image& image) override {
-        studio_->context.make_current();
+        studio_->context->make_current();
         studio_->target.read(image);
     }
 
 private:
     // What a context holds is destroyed while it is current.
     void close() {
-        if (studio_) studio_->context.make_current();
+        if (studio_) studio_->context->make_current();
+        window_.reset();
         studio_.reset();
     }
 
@@ -123,10 +163,12 @@ private:
     std::string billboard_turn_ = "spherical";
     std::string billboard_facing_ = "camera";
     std::unique_ptr<Studio> studio_;
+    std::optional<StudioWindow> window_;
 };
 
 }  // namespace
 }  // namespace kolize::gl
 
-KOLIZE_PLUGIN(kolize::gl::GlRenderer, .name = "gl", .summary = "OpenGL 3.3 on an image in memory, without a display",
+KOLIZE_PLUGIN(kolize::gl::GlRenderer, .name = "gl",
+              .summary = "OpenGL 3.3 in a window, or on an image in memory without a display",
               .source = "Blinn 1977; Akenine-Moeller, Haines and Hoffman 2018, 13.6")

@@ -169,4 +169,38 @@ out vec4 pixel;
 void main() { pixel = texture(sheet, in_sheet); }
 )";
 
+// A quad along the line, `thickness` pixels wide. It is cut off at the near plane, and pulled a little towards the eye,
+// so that a line on a surface is seen.
+inline constexpr const char* line_vertex_glsl = R"(
+layout(location = 0) in vec3 start;
+layout(location = 1) in vec3 end;
+layout(location = 2) in vec4 paint;
+uniform mat4 clip;
+uniform vec2 picture;  // its size in pixels
+uniform float thickness;
+out vec4 colour;
+
+void main() {
+    vec4 a = clip * vec4(start, 1), b = clip * vec4(end, 1);
+    float before_a = a.z + a.w, before_b = b.z + b.w;
+    if (before_a < 0.0 && before_b > 0.0) a = mix(a, b, before_a / (before_a - before_b));
+    if (before_b < 0.0 && before_a > 0.0) b = mix(b, a, before_b / (before_b - before_a));
+    vec2 along = (b.xy / b.w - a.xy / a.w) * picture;
+    vec2 across = dot(along, along) > 0.0 ? normalize(vec2(-along.y, along.x)) : vec2(1, 0);
+    vec4 place = (gl_VertexID & 1) == 0 ? a : b;
+    place.xy += (gl_VertexID < 2 ? -1.0 : 1.0) * thickness * across / picture * place.w;
+    place.z -= 1e-4 * place.w;
+    colour = paint;
+    gl_Position = before_a < 0.0 && before_b < 0.0 ? vec4(2, 2, 2, 1) : place;
+}
+)";
+
+inline constexpr const char* line_fragment_glsl = R"(
+in vec4 colour;
+uniform float strength;
+out vec4 pixel;
+
+void main() { pixel = vec4(pow(colour.rgb, vec3(2.2)), strength * colour.a); }
+)";
+
 }  // namespace kolize::gl

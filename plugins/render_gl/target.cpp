@@ -52,10 +52,26 @@ void Target::clear(const float (&colour)[3]) {
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-void Target::read(Image& image) {
+void Target::resolve() {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, drawn_.name());
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.name());
     glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
+// The window's bytes are sRGB, too, but OpenGL need not know it: they are copied as they are.
+void Target::copy_to_window(int width, int height) {
+    resolve();
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, resolved_.name());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    glDisable(GL_FRAMEBUFFER_SRGB);
+    glBlitFramebuffer(0, 0, width_, height_, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glEnable(GL_FRAMEBUFFER_SRGB);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(0, 0, width, height);
+}
+
+void Target::read(Image& image) {
+    resolve();
     glBindFramebuffer(GL_FRAMEBUFFER, resolved_.name());
     const std::size_t row = 3 * static_cast<std::size_t>(width_);
     bottom_up_.resize(row * height_);

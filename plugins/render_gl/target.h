@@ -13,12 +13,17 @@ public:
     Target(int width, int height, int samples);
 
     double aspect() const { return static_cast<double>(width_) / height_; }
+    int width() const { return width_; }
     int height() const { return height_; }
     // Everything drawn from now on goes here, on an empty picture of this colour (linear).
     void clear(const float (&colour)[3]);
     void read(Image& image);
+    // To the window whose context is current, from its lower left corner.
+    void copy_to_window(int width, int height);
 
 private:
+    void resolve();
+
     int width_;
     int height_;
     Framebuffer drawn_, resolved_;
