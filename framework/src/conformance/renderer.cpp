@@ -111,6 +111,26 @@ public:
             throw Violation("a world looks otherwise after another one was prepared");
     }
 
+    void lines_and_captions() {
+        Tableau tableau;
+        const Image without = picture(tableau);
+        Image image;
+        const auto with = [&](std::span<const Line> lines, std::span<const Caption> captions) {
+            Frame frame = tableau.frame();
+            frame.lines = lines;
+            frame.captions = captions;
+            renderer_->draw(frame);
+            renderer_->read_pixels(image);
+            return image.pixels != without.pixels;
+        };
+        const Line line{{-1, 1, 1}, {1, 1, 1}};
+        Caption caption{"A"};
+        caption.height = 0.5;
+        if (!with({&line, 1}, {})) throw Violation("a line is not drawn");
+        if (!with({}, {&caption, 1})) throw Violation("a caption is not drawn");
+        if (with({}, {})) throw Violation("something of a line or a caption stays in the next picture");
+    }
+
     // Seen from outside, a wall that hides nothing is one that is drawn from inside only.
     void rooms_from_inside() {
         Tableau tableau;
@@ -162,6 +182,7 @@ std::vector<Check> check_renderer(const PluginLibrary& library, const LoadedPlug
     run("does not write the world", &RendererChecks::does_not_write_the_world);
     run("removed and lost bodies are not drawn", &RendererChecks::leaves_out_what_is_not_there);
     run("takes another world", &RendererChecks::takes_another_world);
+    run("lines and captions over the picture", &RendererChecks::lines_and_captions);
     run("rooms from their inner sides", &RendererChecks::rooms_from_inside);
     return suite.take();
 }
