@@ -15,7 +15,8 @@ struct Desk {
     explicit Desk(Scene scene = mixed_crowd())
         : host(make_host(1)),
           session({std::move(scene), {}}, liars(), *host, 1000),
-          viewer(session, liars(), 1.5, [this](const std::string& line) { said.push_back(line); }, false) {}
+          viewer(
+              session, liars(), 1.5, [this](const std::string& line) { said.push_back(line); }, false) {}
 
     void press(Key key) {
         down(key);
