@@ -20,6 +20,7 @@ struct ViewOptions {
     std::string size = "1280x720";
     bool paused = false;
     RecordOptions record;
+    std::string overlays;
 };
 
 void say(const std::string& line) { std::cout << line << std::endl; }
@@ -57,7 +58,9 @@ public:
           left_(steps),
           renderer_(plugins.make<Renderer>(session.scene().render.stage, host)),
           window_(open(parse_size(options.size))),
-          viewer_(session, plugins, static_cast<double>(window_.width()) / window_.height(), say, options.paused) {
+          viewer_(session, plugins, static_cast<double>(window_.width()) / window_.height(), say, options.paused,
+                  Overlays(options.overlays)) {
+        Overlays(options.overlays).require(session.simulation(), plugins);
         prepare(*renderer_, session.scene(), session.simulation().world());
     }
 
@@ -147,6 +150,7 @@ void add_view(CLI::App& app, int& exit_code) {
     add_plugin_path_option(*command, options->plugin_path);
     command->add_option("--size", options->size, "WIDTHxHEIGHT of the window in pixels")->capture_default_str();
     command->add_flag("--paused", options->paused, "Begin with a pause");
+    command->add_option("--overlay", options->overlays, overlay_help());
     add_record_options(*command, options->record);
     command->footer("Example: kolize view scene.toml --set broadphase.plugin=bsp --record flight.rec");
     command->callback([options, &exit_code] { exit_code = view(*options); });

@@ -5,7 +5,7 @@
 
 namespace kolize {
 
-void Broadphase::outline(Outline&) const {}
+void Broadphase::outline(const BroadphaseInput&, Outline&) {}
 
 namespace {
 

@@ -77,6 +77,7 @@ public:
     // Goes on where another pipeline of the same scene has come to; the walls of the rooms are each pipeline's own.
     void take_over(const Pipeline& before);
 
+    void outline(Outline& outline) const;
     void find_crossings(std::vector<CrossingLine>& crossings) const;
 
     World world;

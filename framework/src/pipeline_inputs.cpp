@@ -1,4 +1,4 @@
-// What is put into a pipeline between two steps.
+// What comes to a pipeline between two steps: inputs, and the questions of whoever looks on.
 #include "pipeline.h"
 
 #include <stdexcept>
@@ -71,6 +71,11 @@ void Pipeline::take_over(const Pipeline& before) {
     measure = Measure();
     measure.start(world, rooms_, expected_steps_);
     if (ledger) ledger.emplace(ledger_config_, world);
+}
+
+void Pipeline::outline(Outline& outline) const {
+    if (broadphase_plugin->descriptor->capabilities.outline)
+        broadphase->outline({bounds_, row_is_static_, generation_}, outline);
 }
 
 void Pipeline::find_crossings(std::vector<CrossingLine>& crossings) const {

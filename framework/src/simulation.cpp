@@ -96,10 +96,7 @@ void Simulation::use(const PipelineConfig& pipeline) {
 
 std::uint64_t Simulation::step_number() const { return state_->pipeline.step_number(); }
 
-void Simulation::outline(Outline& outline) const {
-    if (state_->pipeline.broadphase_plugin->descriptor->capabilities.outline)
-        state_->pipeline.broadphase->outline(outline);
-}
+void Simulation::outline(Outline& outline) const { state_->pipeline.outline(outline); }
 
 void Simulation::find_crossings(std::vector<CrossingLine>& crossings) const {
     state_->pipeline.find_crossings(crossings);

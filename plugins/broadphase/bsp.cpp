@@ -1,7 +1,8 @@
 // Broadphase by binary space partition: space is halved by planes until few boxes are left in each part.
 //
 // Source    Fuchs, Kedem, Naylor, On visible surface generation by a priori tree structures (SIGGRAPH 1980), with
-//           planes across the axes only: Bentley's k-d tree (1975); Ericson, Real-Time Collision Detection (2005), 7.3-8.3.
+//           planes across the axes only: Bentley's k-d tree (1975); Ericson, Real-Time Collision Detection
+//           (2005), 7.3-8.3.
 // Cost      O(N log N + pairs) while most planes cut few boxes. The tree is walked as it is made and never stored:
 //           memory is 4 bytes for each box in the parts between the root and the present one.
 // Accuracy  Exact: a pair is reported if and only if its closed boxes overlap.
@@ -35,13 +36,22 @@ public:
 
     void find_pairs(const kolize::BroadphaseInput& input, std::vector<Pair>& pairs) override {
         kolize::require_valid_bounds(input.bounds);
-        input_ = input;
         pairs_ = &pairs;
-        rows_.reserve(4 * input.bounds.size());  // halves add up to twice the whole, and some boxes lie in both
-        rows_.resize(input.bounds.size());
-        for (std::uint32_t row = 0; row < rows_.size(); ++row) rows_[row] = row;
+        outline_ = nullptr;
         const Vec3 all = Vec3::Constant(kolize::infinity);
-        divide(0, {-all, all}, 0);
+        divide_all(input, {-all, all});
+    }
+
+    // The planes, each as far as the part that it halves; the level is the number of planes above it.
+    void outline(const kolize::BroadphaseInput& input, kolize::Outline& outline) override {
+        kolize::require_valid_bounds(input.bounds);
+        outline_ = &outline;
+        Aabb whole;
+        for (const Aabb& box : input.bounds) {
+            whole.include(box.min);
+            whole.include(box.max);
+        }
+        divide_all(input, whole);
     }
 
 private:
@@ -49,15 +59,28 @@ private:
     // Halving is worth its cost if it leaves at most this part of the box tests.
     static constexpr double worthwhile = 0.9;
 
+    void divide_all(const kolize::BroadphaseInput& input, const Aabb& whole) {
+        input_ = input;
+        rows_.reserve(4 * input.bounds.size());  // halves add up to twice the whole, and some boxes lie in both
+        rows_.resize(input.bounds.size());
+        for (std::uint32_t row = 0; row < rows_.size(); ++row) rows_[row] = row;
+        divide(0, whole, 0);
+    }
+
     // The part's boxes are the rows from `begin` to the end of rows_; they are the same again on return.
     void divide(std::size_t begin, const Aabb& part, int depth) {
         const std::size_t end = rows_.size();
         Plane plane;
         if (end - begin <= static_cast<std::size_t>(leaf_size_) || depth >= max_depth_ || !choose_plane(begin, plane))
-            return test_leaf(begin, part);
+            return outline_ ? void() : test_leaf(begin, part);
 
         Aabb half = part;
         half.max[plane.axis] = plane.at;
+        if (outline_) {
+            Aabb piece = half;
+            piece.min[plane.axis] = plane.at;
+            outline_->boxes.push_back({piece, static_cast<std::uint32_t>(depth)});
+        }
         push_rows(begin, end, [&](const Aabb& box) { return plane.has_below(box); });
         divide(end, half, depth + 1);
         rows_.resize(end);
@@ -130,11 +153,13 @@ private:
 
     kolize::BroadphaseInput input_;
     std::vector<Pair>* pairs_ = nullptr;
-    std::vector<std::uint32_t> rows_;  // a stack of parts, the present one on top
+    kolize::Outline* outline_ = nullptr;  // where the planes go, if it is they that are wanted
+    std::vector<std::uint32_t> rows_;     // a stack of parts, the present one on top
     double sample_[sample_size];
 };
 
 }  // namespace
 
 KOLIZE_PLUGIN(Bsp, .name = "bsp", .summary = "space halved by planes across the axes until few boxes are left",
-              .source = "Fuchs, Kedem, Naylor, SIGGRAPH 1980; Ericson, Real-Time Collision Detection (2005), 8.1-8.3")
+              .source = "Fuchs, Kedem, Naylor, SIGGRAPH 1980; Ericson, Real-Time Collision Detection (2005), 8.1-8.3",
+              .capabilities = {.outline = "planes"})

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <set>
 #include <utility>
 
 namespace {
@@ -69,6 +70,22 @@ public:
         for (std::size_t fine = 0; fine < levels_.size(); ++fine) {
             find_within(levels_[fine], pairs);
             for (std::size_t coarse = 0; coarse < fine; ++coarse) find_between(levels_[fine], levels_[coarse], pairs);
+        }
+    }
+
+    // The cells in which a box is filed; those of the largest boxes are level 0.
+    void outline(const kolize::BroadphaseInput& input, kolize::Outline& outline) override {
+        kolize::require_valid_bounds(input.bounds);
+        choose_levels(input.bounds);
+        std::set<std::pair<std::uint32_t, Cell>> cells;
+        for (const Aabb& box : input.bounds) {
+            const std::uint32_t level = class_of(half_side(box)).level;
+            cells.emplace(level, cell_of(levels_[level], box.min));
+        }
+        for (const auto& [level, cell] : cells) {
+            const double side = 2 / levels_[level].cells_per_half_metre;
+            const Vec3 corner = corners_.min + side * Vec3(double(cell[0]), double(cell[1]), double(cell[2]));
+            outline.boxes.push_back({{corner, corner + Vec3::Constant(side)}, level});
         }
     }
 
@@ -239,7 +256,7 @@ private:
 
     std::array<SizeClass, 2048> classes_;
     std::size_t first_class_ = 0, end_class_ = 0;  // those in use
-    Aabb corners_;  // of the min corners
+    Aabb corners_;                                 // of the min corners
     std::vector<Level> levels_;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> unsorted_;
     std::vector<std::uint32_t> slots_;
@@ -250,4 +267,4 @@ private:
 }  // namespace
 
 KOLIZE_PLUGIN(Grid, .name = "grid", .summary = "uniform grid, one level for each range of sizes",
-              .source = "Ericson, Real-Time Collision Detection (2005), 7.1-7.2")
+              .source = "Ericson, Real-Time Collision Detection (2005), 7.1-7.2", .capabilities = {.outline = "cells"})

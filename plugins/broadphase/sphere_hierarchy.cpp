@@ -79,6 +79,21 @@ public:
     void find_pairs(const kolize::BroadphaseInput& input, std::vector<Pair>& pairs) override {
         kolize::require_valid_bounds(input.bounds);
         if (input.bounds.size() < 2) return;
+        update(input);
+        pairs_ = &pairs;
+        find_within(0);
+    }
+
+    // The spheres of the tree; the level is the depth.
+    void outline(const kolize::BroadphaseInput& input, kolize::Outline& outline) override {
+        kolize::require_valid_bounds(input.bounds);
+        if (input.bounds.empty()) return;
+        update(input);
+        add_spheres(0, 0, outline);
+    }
+
+private:
+    void update(const kolize::BroadphaseInput& input) {
         if (input.generation != generation_ || input.bounds.size() != items_.size()) {
             build(input);
         } else {
@@ -86,11 +101,16 @@ public:
             fit_spheres();
             if (total_radius() > rebuild_at_ * built_radius_) build(input);
         }
-        pairs_ = &pairs;
-        find_within(0);
     }
 
-private:
+    void add_spheres(std::uint32_t index, std::uint32_t level, kolize::Outline& outline) const {
+        const Node& node = nodes_[index];
+        outline.balls.push_back({node.sphere.center, node.sphere.radius, level});
+        if (node.right == 0) return;
+        add_spheres(index + 1, level + 1, outline);
+        add_spheres(node.right, level + 1, outline);
+    }
+
     void build(const kolize::BroadphaseInput& input) {
         generation_ = input.generation;
         items_.clear();
@@ -209,4 +229,5 @@ private:
 }  // namespace
 
 KOLIZE_PLUGIN(SphereHierarchy, .name = "sphere_hierarchy", .summary = "binary tree of bounding spheres",
-              .source = "Hubbard 1996; Ericson, Real-Time Collision Detection (2005), 6.2 and 6.5")
+              .source = "Hubbard 1996; Ericson, Real-Time Collision Detection (2005), 6.2 and 6.5",
+              .capabilities = {.outline = "spheres"})

@@ -16,7 +16,7 @@ struct Desk {
         : host(make_host(1)),
           session({std::move(scene), {}}, liars(), *host, 1000),
           viewer(
-              session, liars(), 1.5, [this](const std::string& line) { said.push_back(line); }, false) {}
+              session, liars(), 1.5, [this](const std::string& line) { said.push_back(line); }, false, Overlays()) {}
 
     void press(Key key) {
         down(key);

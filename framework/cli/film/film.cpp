@@ -16,6 +16,12 @@ std::unique_ptr<PictureSink> make_sink(const FilmOptions& options, const Size& s
 
 }  // namespace
 
+std::string overlay_help() {
+    std::string help = "What a stage did, as lines over the pictures (NAME[,NAME...]): ";
+    for (const OverlayText& text : overlay_texts()) help += (help.ends_with(' ') ? "" : ", ") + std::string(text.name);
+    return help + "; docs/overlays.md";
+}
+
 Size parse_size(const std::string& text) {
     Size size;
     const char* end = text.data() + text.size();
@@ -38,6 +44,7 @@ void add_film_options(CLI::App& command, FilmOptions& options) {
          {command.add_option("--fps", options.fps, "Pictures a second of simulated time")
               ->check(CLI::Range(1e-3, 1e4))
               ->capture_default_str(),
+          command.add_option("--overlay", options.overlays, overlay_help()),
           command.add_option("--size", options.size, "WIDTHxHEIGHT of the pictures in pixels")->capture_default_str()})
         option->check(
             [&options](const std::string&) { return options.wanted() ? "" : "goes with --frames or --video"; });
@@ -47,10 +54,13 @@ Film::Film(const FilmOptions& options, const Scene& scene, const Simulation& sim
            Host& host, std::uint64_t steps, Director director)
     : title_("renderer '" + scene.render.stage.plugin + "'"),
       renderer_(plugins.make<Renderer>(scene.render.stage, host)),
+      plugins_(plugins),
+      overlays_(options.overlays),
       director_(std::move(director)),
       fps_(options.fps),
       dt_(scene.pipeline.step.dt),
       last_step_(static_cast<double>(steps)) {
+    overlays_.require(simulation, plugins);
     const Size size = parse_size(options.size);
     shot_.camera = camera_of(scene, simulation.world(), static_cast<double>(size.width) / size.height);
     shot_.lights = lights_of(scene, simulation.world());
@@ -82,7 +92,9 @@ void Film::look(const Simulation& simulation) {
 }
 
 void Film::shoot(const Simulation& simulation, double time) {
+    shot_.lines.clear();
     if (director_) director_(simulation, time, shot_);
+    overlays_.draw(simulation, plugins_, shot_.lines);
     guarded([&] {
         renderer_->draw(
             {simulation.world(), time, shot_.camera, shot_.lights, explosions_, shot_.lines, shot_.captions});

@@ -1,6 +1,7 @@
 // Pictures of a simulation at a steady rate of simulated time: kolize run --frames | --video.
 #pragma once
 
+#include "overlay/overlay.h"
 #include "picture_sink.h"
 
 #include <kolize/scene.h>
@@ -17,6 +18,7 @@ struct FilmOptions {
     std::string video;   // file, or ""
     double fps = 30;     // pictures a second of simulated time
     std::string size = "1280x720";
+    std::string overlays;  // names, or ""
 
     bool wanted() const { return !frames.empty() || !video.empty(); }
 };
@@ -29,6 +31,9 @@ struct Size {
 
 // "1280x720". Throws Error.
 Size parse_size(const std::string& text);
+
+// Of the option --overlay.
+std::string overlay_help();
 
 // What a picture shows besides the world and its explosions.
 struct Shot {
@@ -64,6 +69,8 @@ private:
 
     std::string title_;  // of the renderer, for messages
     StagePtr<Renderer> renderer_;
+    const PluginLibrary& plugins_;
+    Overlays overlays_;
     Director director_;
     Shot shot_;
     std::vector<Explosion> explosions_;

@@ -23,17 +23,19 @@ F12         picture into a file
 Esc         end
 Pointer     left button turns, right one shifts, wheel zooms)";
 
+constexpr const char* overlay_prefix = "overlay.";
 constexpr double drag_step = 0.05;  // 1/s
 const Vec3 earth(0, -9.81, 0);      // m/s^2, where the scene has no gravity of its own
 
 }  // namespace
 
 Viewer::Viewer(Session& session, const PluginLibrary& plugins, double aspect,
-               std::function<void(const std::string&)> say, bool paused)
+               std::function<void(const std::string&)> say, bool paused, const Overlays& overlays)
     : session_(session),
       plugins_(plugins),
       say_(std::move(say)),
       start_(session.scene().world),
+      overlays_(overlays),
       camera_(camera_of(session.scene(), session.simulation().world(), aspect)),
       running_(!paused) {
     shot_.lights = lights_of(session.scene(), session.simulation().world());
@@ -124,6 +126,8 @@ double Viewer::time() const {
 const Shot& Viewer::shot() {
     shot_.camera = camera_.camera();
     shot_.captions.clear();
+    shot_.lines.clear();
+    overlays_.draw(session_.simulation(), plugins_, shot_.lines);
     const std::string pace = running_ ? (speed_ == 1 ? "" : "  speed " + number(speed_)) : "  paused";
     Caption state{number(time(), 6) + " s  step " + std::to_string(session_.simulation().step_number()) + pace};
     state.x = 0.99, state.y = 0.99, state.anchor_x = state.anchor_y = 1;
@@ -141,8 +145,18 @@ Panel* Viewer::panel() {
     panel_.items.clear();
     show_pipeline(session_.simulation().pipeline(), plugins_, panel_.items);
     history_.show(session_.simulation(), panel_.items);
+    show_overlays();
     if (!message_.empty()) panel_.items.push_back({PanelItemKind::text, "message", "refused", "", "", Value(message_)});
     return &panel_;
+}
+
+// Those that the pipeline in force can show.
+void Viewer::show_overlays() {
+    panel_.items.push_back({PanelItemKind::heading, overlay_prefix, "Overlays"});
+    for (const OverlayText& text : overlay_texts())
+        if (overlay_refusal(text.name, session_.simulation(), plugins_).empty())
+            panel_.items.push_back({PanelItemKind::toggle, overlay_prefix + std::string(text.name), text.name, "",
+                                    text.shows, Value(overlays_.is_shown(text.name))});
 }
 
 void Viewer::take_edits() {
@@ -152,6 +166,7 @@ void Viewer::take_edits() {
 
 // At the boundary of two steps. What does not fit is told, and the pipeline stays.
 void Viewer::take_edit(const PanelItem& item) {
+    if (item.id.starts_with(overlay_prefix)) return overlays_.show(item.label, std::get<bool>(item.value));
     const auto edit = edit_pipeline(session_.simulation().pipeline(), item);
     if (!edit) return;
     const std::uint64_t step = session_.simulation().step_number();

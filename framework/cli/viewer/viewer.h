@@ -17,7 +17,7 @@ class Viewer {
 public:
     // `say` takes one line for the user's terminal whenever something was changed.
     Viewer(Session& session, const PluginLibrary& plugins, double aspect, std::function<void(const std::string&)> say,
-           bool paused);
+           bool paused, const Overlays& overlays);
 
     void handle(const WindowEvent& event, int height);
     // What the user has changed in the panel.
@@ -46,12 +46,14 @@ private:
     void set_gravity(const Vec3& gravity);
     void put_in(const Input& input);
     void reset();
+    void show_overlays();
     void take_edit(const PanelItem& item);
 
     Session& session_;
     const PluginLibrary& plugins_;
     std::function<void(const std::string&)> say_;
     World start_;  // as the session began
+    Overlays overlays_;
     OrbitCamera camera_;
     Shot shot_;
     std::vector<Explosion> explosions_;

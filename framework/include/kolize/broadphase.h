@@ -55,9 +55,9 @@ public:
     // Appends to `pairs`, which comes empty and keeps its capacity between steps.
     virtual void find_pairs(const BroadphaseInput& input, std::vector<Pair>& pairs) = 0;
 
-    // Appends how the last find_pairs divided space. Called only where the descriptor's capabilities have `outline`,
-    // and only if somebody looks on: find_pairs does nothing for it.
-    virtual void outline(Outline& outline) const;
+    // Appends how find_pairs divides space for this input. Called only where the descriptor's capabilities have
+    // `outline`, and only if somebody looks on: find_pairs keeps nothing for it.
+    virtual void outline(const BroadphaseInput& input, Outline& outline);
 };
 
 // Throws std::invalid_argument naming the first row whose box is not finite or has min > max.

@@ -110,7 +110,7 @@ public:
 
     // For whoever looks on; nothing is computed for these unless they are called. Nothing where the plugin has no such
     // capability.
-    void outline(Outline& outline) const;                             // of the last step's broadphase
+    void outline(Outline& outline) const;  // of the broadphase, for the boxes of the last step
     void find_crossings(std::vector<CrossingLine>& crossings) const;  // of the last step's pairs, at the present poses
 
 private:
