@@ -228,6 +228,24 @@ TEST_CASE("What does not fit is refused in the panel, and the pipeline stays", "
     for (const PanelItem& item : desk.viewer.panel()->items) CHECK(item.id != "message");
 }
 
+TEST_CASE("Overlays are ticked in the panel, those that the pipeline can show", "[viewer][panel]") {
+    Desk desk;
+    desk.steps(20);
+    const auto offered = [&](const std::string& id) {
+        const auto& items = desk.viewer.panel()->items;
+        return std::any_of(items.begin(), items.end(), [&](const PanelItem& item) { return item.id == id; });
+    };
+    CHECK(offered("overlay.cells"));
+    CHECK_FALSE(offered("overlay.planes"));
+    CHECK(desk.viewer.shot().lines.empty());
+    desk.edit("overlay.bounds", true);
+    CHECK_FALSE(desk.viewer.shot().lines.empty());
+    desk.edit("overlay.bounds", false);
+    CHECK(desk.viewer.shot().lines.empty());
+    desk.edit("broadphase.plugin", std::string("bsp"));
+    CHECK(offered("overlay.planes"));
+}
+
 TEST_CASE("The graphs count what the simulation counts", "[viewer][panel]") {
     Desk desk;
     std::vector<float> pairs, contacts;
