@@ -17,7 +17,8 @@ namespace {
 
 constexpr const char* side_names[6] = {"-x", "+x", "-y", "+y", "-z", "+z"};
 
-// The solid behind one side, in world coordinates.
+// The solid behind one side, in world coordinates. It covers the corners towards other walls, and ends where a side is
+// open: what is beyond belongs to somebody else.
 struct Slab {
     Vec3 center;
     Vec3 half;
@@ -29,6 +30,11 @@ Slab slab_of(const Room& room, int side) {
     const bool upper = side % 2;
     const double t = room.thickness;
     Slab slab{0.5 * (room.min + room.max), 0.5 * (room.max - room.min) + Vec3::Constant(t), Vec3::Zero()};
+    for (int other = 0; other < 6; ++other) {
+        if (!room.open[other]) continue;
+        slab.half[other / 2] -= 0.5 * t;
+        slab.center[other / 2] += other % 2 ? -0.5 * t : 0.5 * t;
+    }
     slab.center[axis] = upper ? room.max[axis] + 0.5 * t : room.min[axis] - 0.5 * t;
     slab.half[axis] = 0.5 * t;
     slab.inward[axis] = upper ? -1 : 1;
