@@ -12,7 +12,7 @@ Places find_places() {
     const fs::path installed = program.parent_path().parent_path() / "share" / "kolize" / "demos";
     const fs::path sources = KOLIZE_DEMOS_DIR;
     const bool is_installed = !failure && fs::is_directory(installed / "tunnel", failure);
-    const fs::path demos = is_installed ? installed : sources;
+    const fs::path demos = (is_installed ? installed : sources).lexically_normal();
     const fs::path tunnel = demos / "tunnel";
     Places places{tunnel / "pipelines" / "default.toml", demos / "box_fighter" / "fighter.obj", {}};
     for (const char* name : {"first_flight", "winding_way", "the_deep"})
