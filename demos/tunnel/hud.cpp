@@ -54,12 +54,12 @@ std::string instruments(const Game& game, const World& world) {
 
 // Lamps of neighbouring cells differ in colour, so that one sees the tunnel go by.
 Light lamp(const Cell& cell, std::size_t number) {
-    static const std::array<Vec3, 3> colours = {Vec3(1.0, 0.80, 0.55), Vec3(0.55, 0.78, 1.0), Vec3(0.75, 1.0, 0.72)};
+    static const std::array<Vec3, 3> colours = {Vec3(1.0, 0.58, 0.25), Vec3(0.25, 0.55, 1.0), Vec3(0.40, 1.0, 0.55)};
     Light light;
     const Vec3 up = cell.back.y() == 0 && cell.ahead.y() == 0 ? Vec3(Vec3::UnitY()) : Vec3(Vec3::UnitX());
     light.position = center_of(cell) + 0.36 * cube_side * up;
-    light.colour = 0.8 * colours[number % colours.size()];
-    light.range = 1.5 * cube_side;
+    light.colour = 0.9 * colours[number % colours.size()];
+    light.range = 1.35 * cube_side;
     return light;
 }
 
