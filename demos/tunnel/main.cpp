@@ -85,6 +85,8 @@ void add_options(CLI::App& app, Options& options) {
     app.add_option("--time", options.play.time, "The game ends after so much simulated time, s")
         ->check(CLI::PositiveNumber);
     cli::add_film_options(app, options.play.film);
+    app.add_option("--record", options.play.record,
+                   "Keep the flight in this file, to be played again by kolize run --replay");
     cli::add_json_option(app, options.json);
     cli::add_threads_option(app, options.threads);
     cli::add_plugin_path_option(app, options.plugin_path);

@@ -9,7 +9,7 @@
 namespace kolize::tunnel {
 namespace {
 
-Played played(const Game& game, const Session& session) {
+Played played(const Game& game, const Playthrough& session) {
     const Simulation& simulation = session.simulation();
     return {session.ticks(), session.time(), simulation.state_hash(),
             simulation.world().position[game.tunnel().fighter]};
@@ -53,7 +53,7 @@ private:
 Played play_script(Game& game, const std::vector<TimedEvent>& script, const PlayOptions& options,
                    const PluginLibrary& plugins, Host& host) {
     constexpr std::uint64_t no_last_step = 1ull << 40;
-    Session session(game, plugins, host);
+    Playthrough session(game, plugins, host, options.record);
     ScriptPlayer player(script);
     Closing closing(script, options);
     std::optional<cli::Film> film;
@@ -73,6 +73,7 @@ Played play_script(Game& game, const std::vector<TimedEvent>& script, const Play
         if (options.tells) tell(game, told);
     }
     if (film) film->finish();
+    session.write_recording();
     return played(game, session);
 }
 
@@ -81,20 +82,20 @@ namespace {
 // Pictures of a game in a window.
 class Screen {
 public:
-    Screen(const Game& game, const Session& session, const PluginLibrary& plugins, Host& host)
+    Screen(const Game& game, const Playthrough& session, const PluginLibrary& plugins, Host& host)
         : renderer_(plugins.make<Renderer>(game.tunnel().scene.render.stage, host)), window_(open(game)) {
         cut(game, session);
     }
 
     Window& window() { return window_; }
     // Another tunnel from here on.
-    void cut(const Game& game, const Session& session) {
+    void cut(const Game& game, const Playthrough& session) {
         number_ = session.tunnel_number();
         explosions_.clear();
-        renderer_->prepare(session.simulation().world(), {game.tunnel().scene.rooms});
+        cli::prepare(*renderer_, game.tunnel().scene, session.simulation().world());
     }
     // After each tick.
-    void look(const Game& game, const Session& session) {
+    void look(const Game& game, const Playthrough& session) {
         if (session.tunnel_number() != number_) cut(game, session);
         if (!game.runs()) return;
         const World& world = session.simulation().world();
@@ -102,7 +103,7 @@ public:
             if (event.kind == EventKind::explosion)
                 explosions_.push_back({event.position, world.shape_of(event.body).radius, session.time()});
     }
-    void show(const Game& game, const Session& session) {
+    void show(const Game& game, const Playthrough& session) {
         const World& world = session.simulation().world();
         direct(game, world, shot_);
         renderer_->draw({world, session.time(), shot_.camera, shot_.lights, explosions_, shot_.lines, shot_.captions});
@@ -134,7 +135,7 @@ WindowEvent size_of(const Window& window) {
     return event;
 }
 
-void play(Game& game, Session& session, Screen& screen, const PlayOptions& options) {
+void play(Game& game, Playthrough& session, Screen& screen, const PlayOptions& options) {
     using Clock = std::chrono::steady_clock;
     constexpr int most_ticks = 8;  // a picture: what takes longer than it lasts is shown in slow motion
     const double dt = game.tunnel().scene.pipeline.step.dt;
@@ -162,9 +163,10 @@ void play(Game& game, Session& session, Screen& screen, const PlayOptions& optio
 }  // namespace
 
 Played play_in_window(Game& game, const PlayOptions& options, const PluginLibrary& plugins, Host& host) {
-    Session session(game, plugins, host);
+    Playthrough session(game, plugins, host, options.record);
     Screen screen(game, session, plugins, host);
     play(game, session, screen, options);
+    session.write_recording();
     return played(game, session);
 }
 

@@ -1,7 +1,7 @@
 // Plays a game: by a script without a window, or by somebody in one.
 #pragma once
 
-#include "session.h"
+#include "playthrough.h"
 
 #include "film/film.h"
 
@@ -12,7 +12,8 @@ namespace kolize::tunnel {
 struct PlayOptions {
     std::optional<double> time;  // simulated, s; the game ends then at the latest
     cli::FilmOptions film;
-    bool tells = true;  // on stdout, one line for each flight finished
+    std::filesystem::path record;  // see Playthrough
+    bool tells = true;             // on stdout, one line for each flight finished
 };
 
 struct Played {

@@ -85,7 +85,7 @@ public:
     const Vec3& velocity() const { return world().velocity[fighter()]; }
 
     Game game;
-    Session session;
+    Playthrough session;
 
 private:
     void send(WindowEventKind kind, Key key) {

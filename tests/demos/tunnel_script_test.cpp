@@ -24,7 +24,7 @@ Flown fly(const std::string& name, int threads) {
     const std::vector<TimedEvent> script = project_script(name);
     const std::unique_ptr<Host> host = make_host(threads);
     Game game = game_of(tunnel);
-    Session session(game, game_plugins(), *host);
+    Playthrough session(game, game_plugins(), *host);
     ScriptPlayer player(script);
     Flown flown;
     while (!player.at_end()) {
@@ -65,7 +65,7 @@ TEST_CASE("The first flight's missiles hit the crate in its way", "[tunnel]") {
     const TunnelScene tunnel = project_tunnel("first_flight");
     const std::vector<TimedEvent> script = project_script("first_flight");
     Game game = game_of(tunnel);
-    Session session(game, game_plugins(), *game_host());
+    Playthrough session(game, game_plugins(), *game_host());
     ScriptPlayer player(script);
     const World& world = session.simulation().world();
     const auto crate = std::find(world.name.begin(), world.name.end(), "models/crate.obj.6") - world.name.begin();
@@ -158,4 +158,19 @@ TEST_CASE("The program refuses what it cannot use in one sentence", "[tunnel]") 
     shell.folder.write("good.keys", "");
     CHECK(play(shell, "t.txt --keys good.keys").err ==
           "kolize-tunnel: t.txt:1:25: the dynamics of this cell have no END before the end of the file\n");
+}
+
+TEST_CASE("A recorded flight is played by kolize run to the same bits, with another broadphase too",
+          "[tunnel][record]") {
+    const Shell shell;
+    const std::string files = "'" + (tunnel_folder / "tunnels" / "first_flight.txt").string() + "' --keys '" +
+                              (tunnel_folder / "scripts" / "first_flight.keys").string() + "'";
+    REQUIRE(play(shell, files + " --record flight.rec").code == 0);
+    CHECK(shell.kolize("run --replay flight.rec").out.find("replay: the same bits in all") != std::string::npos);
+    const Outcome other = shell.kolize("run --replay flight.rec --set broadphase.plugin=brute_force");
+    CHECK(other.code == 0);
+    CHECK(other.out.find("replay: the same bits in all") != std::string::npos);
+    const Outcome coarse = shell.kolize("run --replay flight.rec --set step.integrator=semi_implicit_euler");
+    CHECK(coarse.code == 0);
+    CHECK(coarse.out.find("replay: the two part at step") != std::string::npos);
 }

@@ -91,6 +91,11 @@ void Film::look(const Simulation& simulation) {
     ++steps_;
 }
 
+void Film::cut(const Scene& scene, const Simulation& simulation) {
+    explosions_.clear();
+    guarded([&] { prepare(*renderer_, scene, simulation.world()); });
+}
+
 void Film::shoot(const Simulation& simulation, double time) {
     shot_.lines.clear();
     if (director_) director_(simulation, time, shot_);

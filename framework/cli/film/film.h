@@ -60,6 +60,8 @@ public:
     // The pictures that show the state as it stands: to be called before the first step and after each one. The
     // picture of time t shows the state after the last step that ended at t or before.
     void look(const Simulation& simulation);
+    // The pictures from here on are of another simulation, with steps of the same length; their times go on.
+    void cut(const Scene& scene, const Simulation& simulation);
     void finish() { sink_->finish(); }
 
 private:

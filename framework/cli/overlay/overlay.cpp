@@ -39,7 +39,7 @@ void draw_bounds(Page& page) {
     const World& world = page.world();
     for (std::uint32_t body = 0; body < world.size(); ++body) {
         const Aabb box = world_bounds(world, body);
-        if (!world.removed[body] && box.finite())
+        if (!world.removed[body] && box.finite() && !is_room_wall(world, body))
             draw_box(box, world.is_static[body] ? static_colour : moving_colour, page.lines);
     }
 }
@@ -83,7 +83,10 @@ void draw_crossings(Page& page, bool by_loop) {
         page.lines.push_back({line.from, line.to, by_loop ? colour_of(line.loop) : segment_colour});
 }
 
-Vec3 place_of(const World& world, const Contact& c) { return world.position[c.a] + c.arm_a; }
+// Bodies may have moved on since the contact was found; static ones have not.
+Vec3 place_of(const World& world, const Contact& c) {
+    return world.is_static[c.b] ? Vec3(world.position[c.b] + c.arm_b) : Vec3(world.position[c.a] + c.arm_a);
+}
 
 void draw_contacts(Page& page) {
     for (const Contact& c : page.simulation.contacts().rows)

@@ -4,22 +4,25 @@
 #include "game.h"
 #include "key_script.h"
 
+#include "session.h"
+
+#include <filesystem>
 #include <memory>
 
 namespace kolize::tunnel {
 
-// Everything that the game puts into a simulation goes through here.
-void put_in(Simulation& simulation, const Input& input);
-
-class Session {
+class Playthrough {
 public:
-    // All of these have to outlive the session. Throws what Simulation's constructor throws.
-    Session(Game& game, const PluginLibrary& plugins, Host& host);
+    // All of these have to outlive it. Each tunnel is recorded into a file of its own, unless `record` is empty: of
+    // flights.rec the second one into flights.2.rec. Throws what Simulation's constructor throws.
+    Playthrough(Game& game, const PluginLibrary& plugins, Host& host, std::filesystem::path record = {});
 
     // Brings game and simulation one step further, into the next tunnel if the player went on to it.
     void tick();
+    // The recording of the present tunnel; those before were written when the next one began. Throws Error.
+    void write_recording() const;
 
-    const Simulation& simulation() const { return *simulation_; }
+    const Simulation& simulation() const { return session_->simulation(); }
     std::size_t tunnel_number() const { return number_; }  // of the simulation
     std::uint64_t ticks() const { return ticks_; }
     double time() const;  // simulated, of all ticks, s
@@ -30,7 +33,8 @@ private:
     Game& game_;
     const PluginLibrary& plugins_;
     Host& host_;
-    std::unique_ptr<Simulation> simulation_;
+    std::filesystem::path record_;
+    std::unique_ptr<cli::Session> session_;  // of the present tunnel
     std::size_t number_ = 0;
     std::uint64_t ticks_ = 0;
     std::vector<Input> inputs_;
