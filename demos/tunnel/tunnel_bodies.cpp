@@ -11,6 +11,16 @@ namespace {
 constexpr double half_cube = cube_side / 2;
 constexpr double ball_radius = 2;  // m
 
+// World bounds are those of a box that turns with the body; these hold the body itself.
+Aabb tight_bounds(const World& world, std::uint32_t body) {
+    const Mesh* mesh = world.shape_of(body).mesh.get();
+    if (!mesh) return world_bounds(world, body);
+    Aabb box;
+    const Transform pose = world.pose(body);
+    for (const Vec3& vertex : mesh->vertices) box.include(pose * vertex);
+    return box;
+}
+
 class BodyMaker {
 public:
     explicit BodyMaker(TunnelScene& tunnel)
@@ -61,7 +71,7 @@ private:
 
     void require_inside(const Cell& cell, const PlacedBody& placed, std::uint32_t body) const {
         constexpr double rounding = 1e-9;
-        const Aabb box = world_bounds(world_, body);
+        const Aabb box = tight_bounds(world_, body);
         const Vec3 center = center_of(cell);
         const double reach = std::max((box.max - center).maxCoeff(), (center - box.min).maxCoeff());
         if (!(reach <= half_cube * (1 + rounding)))

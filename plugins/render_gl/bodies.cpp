@@ -66,8 +66,9 @@ Bodies::Bodies()
     program_.bind_block("Lighting", Lighting::binding);
 }
 
-void Bodies::add_batch(const Surface& surface) {
+void Bodies::add_batch(const Surface& surface, const SkinTexture* skin) {
     Batch& batch = batches_.emplace_back();
+    batch.skin = skin;
     batch.index_count = static_cast<GLsizei>(surface.indices.size());
     glBindVertexArray(batch.array.name());
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, batch.indices.name());
@@ -83,17 +84,42 @@ void Bodies::add_batch(const Surface& surface) {
     attribute(5, 4, GL_UNSIGNED_BYTE, sizeof(Instance), offsetof(Instance, paint), 1);
 }
 
-void Bodies::prepare(const World& world, double crease, const std::string& colour_by) {
+void Bodies::add_balls(const SkinTexture* skin) {
+    for (int level = 0; level < ball_levels; ++level) add_batch(unit_ball(level + 1), skin);
+}
+
+void Bodies::add_shapes(const World& world, double crease) {
     batches_.clear();
-    for (int level = 0; level < ball_levels; ++level) add_batch(unit_ball(level + 1));
+    add_balls(nullptr);
     batch_of_shape_.assign(world.shapes.size(), 0);
     for (std::size_t i = 0; i < world.shapes.size(); ++i) {
-        if (!world.shapes[i].mesh) continue;
+        const Shape& shape = world.shapes[i];
+        const SkinTexture* skin = skin_of_shape_[i].get();
+        const bool is_skinned_ball = shape.kind == ShapeKind::sphere && skin;
+        if (!shape.mesh && !is_skinned_ball) continue;
         batch_of_shape_[i] = batches_.size();
-        add_batch(surface_of(*world.shapes[i].mesh, crease));
+        is_skinned_ball ? add_balls(skin) : add_batch(surface_of(*shape.mesh, crease), skin);
     }
+}
+
+void Bodies::prepare(const World& world, std::span<const Skin> skins, double crease, const std::string& colour_by) {
+    skin_of_shape_.clear();
+    skin_of_shape_.resize(world.shapes.size());
+    for (const Skin& skin : skins) {
+        const Shape& shape = world.shapes.at(skin.shape);
+        const double unit = shape.kind == ShapeKind::sphere ? shape.radius : 1;  // of the surface that is drawn, m
+        skin_of_shape_[skin.shape] = std::make_unique<SkinTexture>(skin.image, unit / skin.side);
+    }
+    add_shapes(world, crease);
     colour_of_body_ = colours(world, colour_by);
     instances_.resize(batches_.size());
+}
+
+std::size_t Bodies::batch_of(const World& world, std::uint32_t body, const View& view, double pixels_at_1_m) const {
+    const Shape& shape = world.shape_of(body);
+    const std::size_t first = batch_of_shape_[world.shape[body]];
+    if (shape.kind != ShapeKind::sphere) return first;
+    return first + ball_level(pixels_at_1_m * shape.radius / (world.position[body] - view.eye).norm());
 }
 
 void Bodies::collect(const World& world, const View& view, double pixels_at_1_m) {
@@ -102,18 +128,18 @@ void Bodies::collect(const World& world, const View& view, double pixels_at_1_m)
         const Shape& shape = world.shape_of(i);
         if (shape.kind == ShapeKind::half_space || !is_drawn(world, i)) continue;
         const bool is_ball = shape.kind == ShapeKind::sphere;
-        std::size_t batch = batch_of_shape_[world.shape[i]];
-        if (is_ball) {
-            const double pixels = pixels_at_1_m * shape.radius / (world.position[i] - view.eye).norm();
-            batch = ball_level(pixels);
-        }
         const auto& [red, green, blue] = colour_of_body_[i];
-        Instance& instance = instances_[batch].emplace_back();
+        Instance& instance = instances_[batch_of(world, i, view, pixels_at_1_m)].emplace_back();
         instance.placement.leftCols<3>() =
             ((is_ball ? shape.radius : 1.0) * world.orientation[i].toRotationMatrix()).cast<float>();
         instance.placement.col(3) = view.from_eye(world.position[i]);
         instance.paint = {red, green, blue, static_cast<std::uint8_t>(is_ball ? 255 : 0)};
     }
+}
+
+void Bodies::set_skin(const Batch& batch) const {
+    glUniform1f(program_.uniform("skin_repeats"), batch.skin ? batch.skin->repeats() : 0);
+    if (batch.skin) glBindTexture(GL_TEXTURE_2D, batch.skin->name());
 }
 
 void Bodies::draw(const World& world, const View& view, int picture_height, float gloss) {
@@ -123,6 +149,7 @@ void Bodies::draw(const World& world, const View& view, int picture_height, floa
     glUniform1f(program_.uniform("gloss"), gloss);
     for (std::size_t i = 0; i < batches_.size(); ++i) {
         if (instances_[i].empty()) continue;
+        set_skin(batches_[i]);
         glBindVertexArray(batches_[i].array.name());
         glBindBuffer(GL_ARRAY_BUFFER, batches_[i].instances.name());
         glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(instances_[i].size() * sizeof(Instance)),

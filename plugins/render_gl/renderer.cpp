@@ -115,7 +115,7 @@ public:
 
     void prepare(const World& world, const Scenery& scenery) override {
         studio_->context->make_current();
-        studio_->bodies.prepare(world, crease_ / 180 * std::numbers::pi, colour_by_);
+        studio_->bodies.prepare(world, scenery.skins, crease_ / 180 * std::numbers::pi, colour_by_);
         studio_->surfaces.prepare(world, scenery.rooms, pattern_size_);
     }
 

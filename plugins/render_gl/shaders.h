@@ -53,25 +53,31 @@ layout(location = 5) in vec4 paint;
 uniform mat4 clip;
 out vec3 place;
 out vec3 normal;
-out vec3 in_body;
+out vec3 in_body;  // balls: of radius 1
+out vec3 normal_in_body;
 flat out vec4 colour;
 
 void main() {
     place = vec3(dot(row_x, vec4(vertex, 1)), dot(row_y, vec4(vertex, 1)), dot(row_z, vec4(vertex, 1)));
     normal = vec3(dot(row_x.xyz, vertex_normal), dot(row_y.xyz, vertex_normal), dot(row_z.xyz, vertex_normal));
     in_body = vertex;
+    normal_in_body = vertex_normal;
     colour = paint;
     gl_Position = clip * vec4(place, 1);
 }
 )";
 
-// Balls (paint.a is 1) are darker in every other octant, so that one sees them spin.
+// Balls (paint.a is 1) are darker in every other octant, so that one sees them spin. A skin is laid on along the three
+// axes of the body, its middle on each axis and no side of it mirrored, and blended by the normal.
 inline constexpr const char* body_fragment_glsl = R"(
 in vec3 place;
 in vec3 normal;
 in vec3 in_body;
+in vec3 normal_in_body;
 flat in vec4 colour;
 uniform float gloss;
+uniform float skin_repeats;  // of the skin's picture in a unit of in_body; 0: the body has no skin
+uniform sampler2D skin;
 out vec4 pixel;
 
 float octants(vec3 p) {
@@ -79,9 +85,21 @@ float octants(vec3 p) {
     return 0.5 + 0.5 * side.x * side.y * side.z;
 }
 
+vec3 painted() { return pow(colour.rgb, vec3(2.2)) * mix(1.0, mix(0.35, 1.0, octants(in_body)), colour.a); }
+
+// The picture's rows come from the top.
+vec3 skin_at(vec2 p) { return texture(skin, vec2(0.5 + p.x, 0.5 - p.y)).rgb; }
+
+vec3 skinned(vec3 p, vec3 n) {
+    vec3 side = vec3(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0, n.z < 0.0 ? -1.0 : 1.0);
+    vec3 share = n * n * n * n;
+    share /= share.x + share.y + share.z;
+    return share.x * skin_at(vec2(-side.x * p.z, p.y)) + share.y * skin_at(vec2(p.x, -side.y * p.z)) +
+           share.z * skin_at(vec2(side.z * p.x, p.y));
+}
+
 void main() {
-    vec3 albedo = pow(colour.rgb, vec3(2.2));
-    albedo *= mix(1.0, mix(0.35, 1.0, octants(in_body)), colour.a);
+    vec3 albedo = skin_repeats > 0.0 ? skinned(skin_repeats * in_body, normalize(normal_in_body)) : painted();
     pixel = vec4(lit(place, normalize(normal), albedo, gloss), 1);
 }
 )";

@@ -3,7 +3,20 @@
 
 namespace {
 
-enum class Fault { none, loses_touching, repeats, unordered, reports_static, remembers, takes_nan, allocates };
+enum class Fault {
+    none,
+    loses_touching,
+    repeats,
+    unordered,
+    reports_static,
+    remembers,
+    takes_nan,
+    allocates,
+    undeclared_outline,
+    empty_outline,
+    misplaced_cells,
+    thick_planes
+};
 constexpr Fault fault = Fault::FAULT;
 
 bool overlap(const kolize::Aabb& a, const kolize::Aabb& b) {
@@ -23,6 +36,14 @@ public:
                 if (overlap(seen_[a], seen_[b])) report(input, a, b, pairs);
     }
 
+    void outline(const kolize::BroadphaseInput& input, kolize::Outline& outline) override {
+        if (fault == Fault::undeclared_outline || fault == Fault::thick_planes)
+            outline.boxes.push_back({input.bounds[0]});
+        if (fault == Fault::misplaced_cells)
+            for (const kolize::Aabb& box : input.bounds)
+                outline.boxes.push_back({{box.max, box.max + box.max - box.min}});
+    }
+
 private:
     static void report(const kolize::BroadphaseInput& input, std::uint32_t a, std::uint32_t b,
                        std::vector<kolize::Pair>& pairs) {
@@ -34,6 +55,11 @@ private:
     std::vector<kolize::Aabb> seen_;
 };
 
+constexpr const char* declared = fault == Fault::thick_planes                                       ? "planes"
+                                 : fault == Fault::empty_outline || fault == Fault::misplaced_cells ? "cells"
+                                                                                                    : nullptr;
+
 }  // namespace
 
-KOLIZE_PLUGIN(Faulty, .name = FAULT_NAME, .summary = "brute force with a fault", .source = "tests")
+KOLIZE_PLUGIN(Faulty, .name = FAULT_NAME, .summary = "brute force with a fault", .source = "tests",
+              .capabilities = {.outline = declared})

@@ -49,6 +49,10 @@ TEST_CASE("the broadphase suite catches each way of being wrong", "[broadphase][
     SECTION("static pairs") { require_caught("reports_static", "nine in ten static", "two static rows"); }
     SECTION("boxes of the last frame") { require_caught("remembers", "moving boxes, rows kept", "frame"); }
     SECTION("NaN accepted") { require_caught("takes_nan", "refuses non-finite boxes", "no std::invalid_argument"); }
+    SECTION("outline not declared") { require_caught("undeclared_outline", "outline", "name none"); }
+    SECTION("outline empty") { require_caught("empty_outline", "outline", "is empty"); }
+    SECTION("cells elsewhere") { require_caught("misplaced_cells", "outline", "holds row"); }
+    SECTION("planes with a thickness") { require_caught("thick_planes", "outline", "not flat"); }
     SECTION("allocation") {
         if (AllocationCounter::available()) require_caught("allocates", "warm calls allocate nothing", "allocations");
     }

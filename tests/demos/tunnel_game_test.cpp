@@ -122,8 +122,8 @@ TEST_CASE("The fighter turns about its own axes and flies where its nose points"
     player.wait(1.5);
     const Quat axes = axes_of(player.world(), player.fighter());
     const Vec3 nose = axes * Vec3::UnitX();
-    CHECK(nose.x() < -0.5);  // left of -z
-    CHECK(std::abs(nose.y()) < 0.01);
+    CHECK(nose.x() < -0.5);            // left of -z
+    CHECK(std::abs(nose.y()) < 0.05);  // yaw is not quite a principal axis of the fighter
     player.down('W');
     player.wait(0.3);
     CHECK(player.velocity().normalized().dot(nose) > 0.999);

@@ -94,7 +94,9 @@ TEST_CASE("There is no way out of a tunnel but through its cells", "[tunnel]") {
 TEST_CASE("The fighter is 9 m long, stands in the first cell and looks along the tunnel", "[tunnel]") {
     const TunnelScene tunnel = tunnel_of(short_tunnel);
     const World& world = tunnel.scene.world;
-    const Aabb box = world_bounds(world, tunnel.fighter);
+    Aabb box;
+    for (const Vec3& vertex : world.shape_of(tunnel.fighter).mesh->vertices)
+        box.include(world.pose(tunnel.fighter) * vertex);
     CHECK(box.max.z() - box.min.z() == Approx(9));
     CHECK(cell_at(tunnel.tunnel, world.position[tunnel.fighter]) == 0u);
     const Quat axes = axes_of(world, tunnel.fighter);
@@ -163,6 +165,10 @@ TEST_CASE("Bodies that do not fit are refused where the file names them", "[tunn
         CAPTURE(text);
         CHECK(complaint_about(text) == complaint);
     }
+    // A gem is 6 m high and 4.2 m wide. Turned by an eighth it reaches 2.12 m, the box around it 3.6 m.
+    const auto gem_at = [](const std::string& x) { return "models/gem.obj (" + x + " 0 0)(0 0 1) 0.25"; };
+    CHECK(complaint_about(with_bodies(gem_at("0.89"), "")).empty());
+    CHECK(complaint_about(with_bodies(gem_at("0.9"), "")).find("reaches out of its cell") != std::string::npos);
     CHECK(complaint_about(with_bodies("models/gate.obj (0 0 0)" + north + " models/pillar.obj (0.8 0 0)" + north,
                                       crate + " (0 0 0)" + north + "\n" + crate + " (0.21 0 0)" + north))
               .empty());

@@ -52,6 +52,20 @@ std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
     return number;
 }
 
+// The header of a PNG file, bytes 12 to 28, and the checksum of it that follows (ISO 15948, annex D).
+void set_width(std::string& png, std::uint32_t width) {
+    const auto store = [&](std::size_t at, std::uint32_t number) {
+        for (std::size_t i = 0; i < 4; ++i) png.at(at + i) = static_cast<char>(number >> (24 - 8 * i));
+    };
+    store(16, width);
+    std::uint32_t sum = ~0u;
+    for (std::size_t i = 12; i < 29; ++i) {
+        sum ^= static_cast<unsigned char>(png[i]);
+        for (int bit = 0; bit < 8; ++bit) sum = sum & 1 ? 0xedb88320u ^ sum >> 1 : sum >> 1;
+    }
+    store(29, ~sum);
+}
+
 // Sets a variable of the environment as long as it lives.
 class Variable {
 public:
@@ -166,6 +180,36 @@ TEST_CASE("Pictures that cannot be had are refused in one sentence, and nothing 
         CHECK(outcome.err.find(sentence) != std::string::npos);
         CHECK(outcome.err.starts_with("kolize: "));
         CHECK(shell.files() == before);
+    }
+}
+
+TEST_CASE("A texture is read from a PNG file beside the scene and seen on the body", "[render][cli]") {
+    const Shell shell;
+    shell.folder.write("plain.toml", flight);
+    shell.folder.write("scene.toml", flight + "[[render.texture]]\nshape = \"ball\"\nfile = \"paint.png\"\n");
+    const std::string options = " --time 0.1 --fps 1 --size 96x64 --frames ";
+    REQUIRE(shell.kolize("run plain.toml" + options + "plain").code == 0);
+    const std::string plain = files_in(shell.folder.path() / "plain").at("frame_000000.png");
+    shell.folder.write("paint.png", plain);  // a picture like any other
+    const Outcome outcome = shell.kolize("run scene.toml" + options + "painted");
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    CHECK(files_in(shell.folder.path() / "painted").at("frame_000000.png") != plain);
+
+    std::string wide = plain;
+    set_width(wide, 20000);
+    const std::vector<std::pair<std::string, std::string>> wrong = {
+        {"no picture", ""}, {plain.substr(0, plain.size() / 2), ""}, {wide, "it has 20000x64 pixels"}};
+    for (const auto& [bytes, reason] : wrong) {
+        CAPTURE(reason);
+        shell.folder.write("paint.png", bytes);
+        const Outcome refused = shell.kolize("run scene.toml" + options + "none");
+        CAPTURE(refused.err);
+        CHECK(refused.code == 2);
+        CHECK(refused.err.find("scene.toml:22:8: cannot read the PNG file 'paint.png': " + reason) !=
+              std::string::npos);
+        CHECK(lines(refused.err) == 1);
+        CHECK_FALSE(std::filesystem::exists(shell.folder.path() / "none"));
     }
 }
 

@@ -23,6 +23,7 @@ mass = 1
 
 Scene load(const std::string& render) {
     const test::ScratchFolder folder;
+    folder.write("paint.png", "");  // the scene only names it
     return load_scene(folder.write("scene.toml", lamp_post + render), {{}, {}, {"grid", "moller", "impulse", "gl"}},
                       test::plugins());
 }
@@ -92,6 +93,53 @@ TEST_CASE("What is wrong in [render] is told with its place", "[render][scene]")
         {light + "colour = [1, -1, 0]", "colour must be three numbers from 0"},
         {light + "range = 0", "range must be greater than 0"},
         {light + "body = \"past\"", "there is no body 'past'; did you mean 'post'?"}};
+    for (const auto& [render, sentence] : wrong) {
+        CAPTURE(render);
+        CHECK_THROWS_WITH(load(render), Catch::Contains("scene.toml:") && Catch::Contains(sentence));
+    }
+}
+
+TEST_CASE("[[render.texture]] names a shape, a file beside the scene and a side", "[render][scene]") {
+    const Scene scene = load(R"([[render.texture]]
+shape = "pole"
+file = "paint.png"
+side = 0.25
+[[render.texture]]
+shape = "ball"
+file = "paint.png"
+[[shape]]
+name = "pole"
+kind = "box"
+half_extents = [1, 2, 3]
+)");
+    REQUIRE(scene.render.textures.size() == 2);
+    const TextureConfig &pole = scene.render.textures[0], &ball = scene.render.textures[1];
+    CHECK(scene.world.shapes[pole.shape].name == "pole");
+    CHECK(pole.file.filename() == "paint.png");
+    CHECK(pole.file.is_absolute());  // as the scene was named
+    CHECK(pole.side == 0.25);
+    CHECK(pole.where.line == 12);
+    CHECK(scene.world.shapes[ball.shape].name == "ball");
+    CHECK(ball.side == 1);
+    CHECK(load("").render.textures.empty());
+}
+
+TEST_CASE("What is wrong in [[render.texture]] is told with its place", "[render][scene]") {
+    const std::string shape = "[[render.texture]]\nshape = \"ball\"\n", whole = shape + "file = \"paint.png\"\n";
+    const std::vector<std::pair<std::string, std::string>> wrong = {
+        {"texture = 1", "scene.toml:10:11: texture must be a list of tables"},
+        {"[[render.texture]]\nfile = \"paint.png\"", "[[render.texture]] needs shape"},
+        {"[[render.texture]]\nshape = \"bell\"", "scene.toml:11:9: there is no shape 'bell'; did you mean 'ball'?"},
+        {"[[render.texture]]\nshape = \"ground\"\n[[shape]]\nname = \"ground\"\nkind = \"half_space\"\nnormal = [0, 1, "
+         "0]",
+         "scene.toml:11:9: shape 'ground' is a half-space, which takes no texture"},
+        {shape, "[[render.texture]] needs file"},
+        {shape + "file = \"pain.png\"", "scene.toml:12:8: file '"},
+        {whole + "side = 0", "scene.toml:13:8: "},
+        {whole + "side = 0", "side must be greater than 0"},
+        {whole + "sides = 2", "scene.toml:13:1: "},
+        {whole + "sides = 2", "did you mean 'side'?"},
+        {whole + whole, "shape 'ball' has a texture already, at "}};
     for (const auto& [render, sentence] : wrong) {
         CAPTURE(render);
         CHECK_THROWS_WITH(load(render), Catch::Contains("scene.toml:") && Catch::Contains(sentence));

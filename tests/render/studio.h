@@ -34,7 +34,7 @@ struct Studio {
         return world.add(body);
     }
     Image picture(double time = 0) {
-        renderer->prepare(world, {rooms});
+        renderer->prepare(world, {rooms, skins});
         renderer->draw({world, time, camera, lights, explosions});
         Image image;
         renderer->read_pixels(image);
@@ -57,6 +57,7 @@ struct Studio {
     StagePtr<Renderer> renderer;
     World world;
     std::vector<Room> rooms;
+    std::vector<Skin> skins;
     Camera camera{{0, 0, 10}, {0, 0, 0}, Vec3::UnitY(), 0.8, 0.1, 1000};
     std::vector<Light> lights{{LightKind::point, {0, 0, 10}}};
     std::vector<Explosion> explosions;

@@ -1,5 +1,6 @@
 #include "film.h"
 
+#include "read_png.h"
 #include "view.h"
 
 #include <algorithm>
@@ -34,7 +35,10 @@ Size parse_size(const std::string& text) {
     return size;
 }
 
-void prepare(Renderer& renderer, const Scene& scene, const World& world) { renderer.prepare(world, {scene.rooms}); }
+void prepare(Renderer& renderer, const Scene& scene, const World& world) {
+    const std::vector<Skin> skins = read_skins(scene);
+    renderer.prepare(world, {scene.rooms, skins});
+}
 
 void add_film_options(CLI::App& command, FilmOptions& options) {
     CLI::Option* frames = command.add_option("--frames", options.frames, "Draw pictures (PNG) into this new folder");
@@ -71,11 +75,13 @@ Film::Film(const FilmOptions& options, const Scene& scene, const Simulation& sim
     sink_ = make_sink(options, size);
 }
 
-// Whatever a renderer throws is told in one sentence.
+// Whatever a renderer throws is told in one sentence; what is wrong with a scene's files says so by itself.
 template <class Function>
 void Film::guarded(Function&& function) const {
     try {
         function();
+    } catch (const Error&) {
+        throw;
     } catch (const std::exception& failure) {
         throw Error(title_ + ": " + failure.what());
     }

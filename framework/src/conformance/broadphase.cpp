@@ -150,23 +150,16 @@ public:
         if (count > 0) throw Violation(std::to_string(count) + " allocations in 17 warm calls on 1000 moving boxes");
     }
 
-    // Boxes and balls are finite; a full one (no plane) that holds the lowest corner of each box; the same again; and
-    // the search in between is not disturbed.
+    // What is declared, and nothing else; the same again; and the search in between is not disturbed.
     void outlines() const {
         const char* const what = plugin_.descriptor->capabilities.outline;
-        if (!what) throw Inapplicable("it gives no outline");
         const auto host = make_host(1);
         const auto stage = make(*host);
         const BoxScene boxes = uniform_boxes(150, options_.seed);
         const Outline first = outline_of(*stage, boxes);
-        if (first.boxes.empty() && first.balls.empty()) throw Violation("the outline of 150 boxes is empty");
-        for (const Outline::Box& piece : first.boxes)
-            if (!piece.box.finite() || !(piece.box.min.array() <= piece.box.max.array()).all())
-                throw Violation("a box of the outline is not finite or inverted");
-        for (const Outline::Ball& ball : first.balls)
-            if (!ball.center.allFinite() || !(ball.radius >= 0 && ball.radius < infinity))
-                throw Violation("a ball of the outline is not finite");
-        if (std::string(what) != "planes") expect_covered(boxes, first);
+        if (!what && !(first.boxes.empty() && first.balls.empty()))
+            throw Violation("it gives an outline, and its capabilities name none");
+        if (what) expect_outline(what, boxes, first);
         expect_same(find(*stage, boxes, 1), boxes, "after an outline");
         const Outline again = outline_of(*stage, boxes);
         if (again.boxes.size() != first.boxes.size() || again.balls.size() != first.balls.size())
@@ -180,6 +173,21 @@ private:
         return outline;
     }
 
+    // Cells and spheres hold every box's lowest corner; planes are flat.
+    static void expect_outline(const std::string& what, const BoxScene& scene, const Outline& outline) {
+        if (outline.boxes.empty() && outline.balls.empty()) throw Violation("the outline of 150 boxes is empty");
+        for (const Outline::Box& piece : outline.boxes) {
+            const Vec3 size = piece.box.max - piece.box.min;
+            if (!piece.box.finite() || !(size.array() >= 0).all())
+                throw Violation("a box of the outline is not finite or inverted");
+            if (what == "planes" && size.minCoeff() != 0) throw Violation("a plane of the outline is not flat");
+        }
+        for (const Outline::Ball& ball : outline.balls)
+            if (!ball.center.allFinite() || !(ball.radius >= 0 && ball.radius < infinity))
+                throw Violation("a ball of the outline is not finite");
+        if (what != "planes") expect_covered(scene, outline);
+    }
+
     static void expect_covered(const BoxScene& scene, const Outline& outline) {
         const Vec3 rounding = Vec3::Constant(1e-9);  // m; the boxes are about 1 m large
         for (std::size_t row = 0; row < scene.bounds.size(); ++row) {
@@ -187,9 +195,9 @@ private:
             const bool in_box = std::any_of(outline.boxes.begin(), outline.boxes.end(), [&](const Outline::Box& piece) {
                 return piece.box.overlaps({corner - rounding, corner + rounding});
             });
-            const bool in_ball =
-                std::any_of(outline.balls.begin(), outline.balls.end(),
-                            [&](const Outline::Ball& ball) { return (corner - ball.center).norm() <= ball.radius + rounding.x(); });
+            const bool in_ball = std::any_of(
+                outline.balls.begin(), outline.balls.end(),
+                [&](const Outline::Ball& ball) { return (corner - ball.center).norm() <= ball.radius + rounding.x(); });
             if (!in_box && !in_ball) throw Violation("no part of the outline holds row " + std::to_string(row));
         }
     }

@@ -126,7 +126,7 @@ std::vector<StageTable> stage_tables(toml::table& config, const PluginDefaults& 
 bool belongs_to_framework(StageKind stage, std::string_view key) {
     return key == "plugin" || (stage == StageKind::narrowphase && key == "walls") ||
            (stage == StageKind::response && key == "when") ||
-           (stage == StageKind::render && (key == "camera" || key == "light"));
+           (stage == StageKind::render && (key == "camera" || key == "light" || key == "texture"));
 }
 
 void drop_foreign_keys(const StageTable& stage, const LoadedPlugin& plugin) {

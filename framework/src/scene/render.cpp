@@ -63,14 +63,54 @@ Light read_light(const toml::table& table, const World& world) {
     return light;
 }
 
+std::uint32_t read_textured_shape(TableReader& reader, const World& world) {
+    reader.require("shape");
+    const std::string name = reader.text("shape", "");
+    const auto found =
+        std::find_if(world.shapes.begin(), world.shapes.end(), [&](const Shape& shape) { return shape.name == name; });
+    if (found == world.shapes.end()) {
+        std::vector<std::string> names;
+        for (const Shape& shape : world.shapes) names.push_back(shape.name);
+        throw Error(reader.where("shape"), "there is no shape '" + name + "'" + hint(name, names));
+    }
+    if (found->kind == ShapeKind::half_space)
+        throw Error(reader.where("shape"), "shape '" + name + "' is a half-space, which takes no texture");
+    return static_cast<std::uint32_t>(found - world.shapes.begin());
+}
+
+TextureConfig read_texture(const toml::table& table, const World& world) {
+    TableReader reader(table, "[[render.texture]]");
+    TextureConfig texture;
+    texture.shape = read_textured_shape(reader, world);
+    texture.file = reader.path("file");
+    texture.side = reader.number("side", texture.side, positive);
+    texture.where = reader.where("file");
+    reader.finish();
+    return texture;
+}
+
+std::vector<TextureConfig> read_textures(const toml::table& render, const World& world) {
+    std::vector<TextureConfig> textures;
+    for (const toml::table* table : tables(render, "texture")) {
+        const TextureConfig texture = read_texture(*table, world);
+        for (const TextureConfig& other : textures)
+            if (other.shape == texture.shape)
+                throw Error(location(*table), "shape '" + world.shapes[texture.shape].name +
+                                                  "' has a texture already, at " + to_string(other.where));
+        textures.push_back(texture);
+    }
+    return textures;
+}
+
 }  // namespace
 
 RenderConfig read_render(const toml::table& config, const PluginDefaults& defaults, const World& world) {
     const toml::table& render = table(config, "render");
     RenderConfig result;
-    result.stage = read_stage(render, "[render]", defaults.render, {"camera", "light"});
+    result.stage = read_stage(render, "[render]", defaults.render, {"camera", "light", "texture"});
     if (const toml::table* camera = camera_table(render)) result.camera = read_camera(*camera);
     for (const toml::table* light : tables(render, "light")) result.lights.push_back(read_light(*light, world));
+    result.textures = read_textures(render, world);
     return result;
 }
 
