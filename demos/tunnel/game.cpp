@@ -53,7 +53,10 @@ void Game::take(const WindowEvent& event) {
         press(event.key);
         break;
     case WindowEventKind::key_up: held_.erase(event.key); break;
-    case WindowEventKind::button_down: trigger_ |= event.button == 0; break;
+    case WindowEventKind::button_down:
+        trigger_ |= event.button == 0;
+        fires_ |= event.button == 0;
+        break;
     case WindowEventKind::button_up: trigger_ &= event.button != 0; break;
     case WindowEventKind::pointer:
         pointer_ = {std::clamp(2 * event.x / width_ - 1, -1.0, 1.0), std::clamp(1 - 2 * event.y / height_, -1.0, 1.0),
@@ -71,6 +74,7 @@ void Game::take(const WindowEvent& event) {
 void Game::press(Key key) {
     if (key == Key::escape) phase_ = Phase::ended;
     if (key == Key::enter) press_enter();
+    if (key == letter('F')) fires_ = true;
     if (key == Key::f1 || key == letter('H')) help_ = !help_;
     if (key == letter('1')) control_ = Control::relative;
     if (key == letter('2')) control_ = Control::autopilot;
@@ -126,7 +130,8 @@ void Game::decide(const World& world, std::vector<Input>& inputs) {
     const LoadInput input{fighter, load.force, load.torque};
     if (!load_put_ || !same(*load_put_, input)) inputs.push_back(input);
     load_put_ = input;
-    const bool fires = phase_ == Phase::flying && (trigger_ || held_.contains(letter('F')));
+    const bool fires = phase_ == Phase::flying && (fires_ || trigger_ || held_.contains(letter('F')));
+    fires_ = false;
     magazine_.decide(tunnel(), world, fires, dt_ * static_cast<double>(steps_), inputs);
 }
 

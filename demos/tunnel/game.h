@@ -79,6 +79,7 @@ private:
 
     std::set<Key> held_;
     bool trigger_ = false;         // left button
+    bool fires_ = false;           // since the last step, however shortly
     Vec3 pointer_ = Vec3::Zero();  // from the middle of the window: x to the right, y up; -1 to 1
     double width_ = 1, height_ = 1;
     Control control_ = Control::autopilot;

@@ -17,9 +17,11 @@ struct Outcome {
 class Shell {
 public:
     // Words as a shell reads them; the program runs in the scratch folder.
-    Outcome kolize(const std::string& arguments) const {
-        const std::string command = "cd '" + folder.path().string() + "' && '" KOLIZE_BINARY_DIR "/bin/kolize' " +
-                                    arguments + " >out.txt 2>err.txt";
+    Outcome kolize(const std::string& arguments) const { return run("kolize " + arguments); }
+    // The same for any of the built programs; its name comes first.
+    Outcome run(const std::string& command_line) const {
+        const std::string command =
+            "cd '" + folder.path().string() + "' && " KOLIZE_BINARY_DIR "/bin/" + command_line + " >out.txt 2>err.txt";
         const int status = std::system(command.c_str());
         return {WEXITSTATUS(status), file_bytes(folder.path() / "out.txt"), file_bytes(folder.path() / "err.txt")};
     }

@@ -40,13 +40,7 @@ Flown fly(const std::string& name, int threads) {
     return flown;
 }
 
-Outcome play(const Shell& shell, const std::string& arguments) {
-    const std::string command = "cd '" + shell.folder.path().string() +
-                                "' && '" KOLIZE_BINARY_DIR "/bin/kolize-tunnel' " + arguments + " >out.txt 2>err.txt";
-    const int status = std::system(command.c_str());
-    return {WEXITSTATUS(status), file_bytes(shell.folder.path() / "out.txt"),
-            file_bytes(shell.folder.path() / "err.txt")};
-}
+Outcome play(const Shell& shell, const std::string& arguments) { return shell.run("kolize-tunnel " + arguments); }
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -21,14 +22,15 @@ struct Shop : Studio {
         return renderer->open_window("shop window", width, height);
     }
     bool hands(const std::string& what) const { return virtual_display().hands("search --name 'shop window' " + what); }
-    // Draws and polls until this holds, 10 s at most.
+    // Draws and polls until this holds, a minute at most.
     template <class Done>
     bool until(Panel* panel, const Done& done) {
         const auto start = std::chrono::steady_clock::now();
-        while (std::chrono::steady_clock::now() - start < std::chrono::seconds(10)) {
+        while (std::chrono::steady_clock::now() - start < std::chrono::seconds(60)) {
             window.poll(events);
             renderer->draw({world, 0, camera, lights, explosions});
             window.present(panel);
+            ++pictures;
             if (done()) return true;
         }
         return false;
@@ -50,8 +52,23 @@ struct Shop : Studio {
         return in_time && moved;
     }
 
+    // For the thread of the hands: a click, with pictures in between, as a user sees them.
+    void click(int x, int y) {
+        const std::string place = std::to_string(x) + " " + std::to_string(y);
+        for (const std::string& what :
+             {"mousemove --window %1 " + place, std::string("mousedown 1"), std::string("mouseup 1")}) {
+            hands(what);
+            wait_for_pictures();
+        }
+    }
+    void wait_for_pictures() const {
+        for (const int wanted = pictures + 4; pictures < wanted;)
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+
     Window& window;
     std::vector<WindowEvent> events;
+    std::atomic<int> pictures = 0;
 };
 
 PanelItem choice() {
@@ -135,19 +152,22 @@ TEST_CASE("What is chosen, ticked and typed in the panel comes back, and is not 
             if (item.edited) edits.push_back(item.id + " " + to_string(item.value));
         return false;
     };
-    const auto click = [&](int x, int y) { return virtual_display().click("shop window", x, y); };
     std::atomic<bool> done = false;
     std::thread user([&] {
-        click(80, 36);  // opens the list below the title bar
-        click(60, 90);  // one of its lines
-        click(15, 58);  // the box to tick
-        click(60, 82);  // the number
-        shop.hands("windowfocus %1 key --window %1 ctrl+a sleep 0.2 type --window %1 --delay 80 25");
-        shop.hands("sleep 0.2 key --window %1 Return sleep 0.3");
+        shop.wait_for_pictures();
+        shop.click(80, 36);  // opens the list below the title bar
+        shop.click(60, 90);  // one of its lines
+        shop.click(15, 58);  // the box to tick
+        shop.click(60, 82);  // the number
+        for (const char* keys :
+             {"windowfocus %1 key --window %1 ctrl+a", "type --window %1 --delay 100 25", "key --window %1 Return"}) {
+            shop.hands(keys);
+            shop.wait_for_pictures();
+        }
         done = true;
     });
     const auto start = std::chrono::steady_clock::now();
-    while (!done && std::chrono::steady_clock::now() - start < std::chrono::seconds(30))
+    while (!done && std::chrono::steady_clock::now() - start < std::chrono::seconds(120))
         shop.until(&panel, [&] { return note(), true; });
     user.join();
     CAPTURE(edits);

@@ -60,7 +60,7 @@ void Viewer::press(const WindowEvent& event) {
     case Key::p: running_ = !running_; break;
     case Key::n:
         running_ = false;
-        single_step_ = true;
+        ++single_steps_;
         break;
     case Key::minus: speed_ = std::max(speed_ / 2, 1.0 / 64); break;
     case Key::equal: speed_ = std::min(speed_ * 2, 16.0); break;

@@ -28,8 +28,8 @@ public:
     double speed() const { return speed_; }  // simulated seconds a second
     // Whether the user asked for a picture since the last call.
     bool takes_screenshot() { return std::exchange(screenshot_, false); }
-    // Whether the user asked for one more step since the last call.
-    bool takes_single_step() { return std::exchange(single_step_, false); }
+    // Whether the user asked for one more step that was not taken yet.
+    bool takes_single_step() { return single_steps_ > 0 && single_steps_-- > 0; }
 
     void step();
 
@@ -61,7 +61,8 @@ private:
     Panel panel_;
     std::string message_;  // the last thing that could not be done
     double speed_ = 1;
-    bool running_ = true, closed_ = false, screenshot_ = false, single_step_ = false;
+    bool running_ = true, closed_ = false, screenshot_ = false;
+    int single_steps_ = 0;
     bool help_ = false, shows_panel_ = true, g_held_ = false;
 };
 
