@@ -2,6 +2,8 @@
 
 #include "hud.h"
 
+#include "film/view.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -98,10 +100,7 @@ public:
     void look(const Game& game, const Playthrough& session) {
         if (session.tunnel_number() != number_) cut(game, session);
         if (!game.runs()) return;
-        const World& world = session.simulation().world();
-        for (const Event& event : session.simulation().events())
-            if (event.kind == EventKind::explosion)
-                explosions_.push_back({event.position, world.shape_of(event.body).radius, session.time()});
+        cli::take_explosions(session.simulation(), session.time(), explosions_);
     }
     void show(const Game& game, const Playthrough& session) {
         const World& world = session.simulation().world();

@@ -5,6 +5,7 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <cstdio>
 
 namespace kolize::gl {
 namespace {
@@ -22,11 +23,25 @@ void set_keys(ImGuiIO& io) {
 
 std::string with_unit(const PanelItem& item) { return item.unit.empty() ? item.label : item.label + ", " + item.unit; }
 
+// "from 1 to 64", with what of it is bounded; "" for what is no number.
+std::string range_of(const PanelItem& item) {
+    if (item.kind != PanelItemKind::integer && item.kind != PanelItemKind::number) return "";
+    constexpr double unbounded = 1e300;
+    char text[96] = "";
+    if (item.min > -unbounded && item.max < unbounded)
+        std::snprintf(text, sizeof text, "from %g to %g %s", item.min, item.max, item.unit.c_str());
+    else if (item.min > -unbounded)
+        std::snprintf(text, sizeof text, "from %g %s", item.min, item.unit.c_str());
+    return text;
+}
+
 void explain(const PanelItem& item) {
-    if (item.help.empty() || !ImGui::IsItemHovered()) return;
+    const std::string range = range_of(item);
+    if ((item.help.empty() && range.empty()) || !ImGui::IsItemHovered()) return;
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(400);
     ImGui::TextUnformatted(item.help.c_str());
+    if (!range.empty()) ImGui::TextUnformatted(range.c_str());
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
 }
@@ -54,11 +69,13 @@ PanelView::PanelView() {
 }
 
 void PanelView::key(Key key, bool down, bool control, bool shift) {
-    context_.use();
-    ImGuiIO& io = ImGui::GetIO();
-    io.KeysDown[static_cast<std::size_t>(key)] = down;
-    io.KeyCtrl = control;
-    io.KeyShift = shift;
+    held_keys_.set(static_cast<std::size_t>(key), down);
+    control_ = control;
+    shift_ = shift;
+    if (!down) return;
+    pressed_keys_.set(static_cast<std::size_t>(key));
+    pressed_control_ |= control;
+    pressed_shift_ |= shift;
 }
 
 void PanelView::letter(unsigned int code) {
@@ -71,7 +88,6 @@ void PanelView::pointer(double x, double y) {
     ImGui::GetIO().MousePos = {static_cast<float>(x), static_cast<float>(y)};
 }
 
-// A click may begin and end between two pictures.
 void PanelView::button(int number, bool down) {
     if (number < 0 || number >= static_cast<int>(held_.size())) return;
     held_[number] = down;
@@ -94,12 +110,21 @@ bool PanelView::takes_pointer() const {
     return ImGui::GetIO().WantCaptureMouse;
 }
 
-void PanelView::show(Panel* panel, int width, int height) {
+// A click, or the stroke of a key, may begin and end between two pictures: ImGui has to see it all the same.
+void PanelView::hand_over_input() {
     context_.use();
-    for (std::size_t i = 0; i < held_.size(); ++i) {
-        ImGui::GetIO().MouseDown[i] = held_[i] || pressed_[i];
-        pressed_[i] = false;
-    }
+    ImGuiIO& io = ImGui::GetIO();
+    for (std::size_t i = 0; i < held_.size(); ++i) io.MouseDown[i] = held_[i] || pressed_[i];
+    for (std::size_t i = 0; i < held_keys_.size(); ++i) io.KeysDown[i] = held_keys_[i] || pressed_keys_[i];
+    io.KeyCtrl = control_ || pressed_control_;
+    io.KeyShift = shift_ || pressed_shift_;
+    pressed_ = {};
+    pressed_keys_.reset();
+    pressed_control_ = pressed_shift_ = false;
+}
+
+void PanelView::show(Panel* panel, int width, int height) {
+    hand_over_input();
     context_.begin_frame(width, height);
     if (panel) {
         ImGui::SetNextWindowPos({0, 0}, ImGuiCond_FirstUseEver);

@@ -6,6 +6,7 @@
 #include <kolize/window.h>
 
 #include <array>
+#include <bitset>
 #include <map>
 #include <string>
 
@@ -28,13 +29,18 @@ public:
     void show(Panel* panel, int width, int height);
 
 private:
+    void hand_over_input();
     void show_item(PanelItem& item);
     void show_value(PanelItem& item);
     void edit_number(PanelItem& item);
     void edit_word(PanelItem& item);
 
     ImGuiGuard context_;
-    std::array<bool, 3> held_{}, pressed_{};    // buttons; pressed since the last picture
+    // What is held, and what was pressed since the last picture, however shortly.
+    std::array<bool, 3> held_{}, pressed_{};  // buttons
+    std::bitset<512> held_keys_, pressed_keys_;
+    bool control_ = false, shift_ = false;  // of the last key that was pressed or let go
+    bool pressed_control_ = false, pressed_shift_ = false;
     std::map<std::string, std::string> words_;  // texts that are being edited, by id
     std::map<std::string, double> numbers_;     // likewise
 };

@@ -1,4 +1,5 @@
 // kolize run --record and --replay as a user meets them.
+#include "cli/crowd.h"
 #include "cli/shell.h"
 
 #include <catch2/catch.hpp>
@@ -6,34 +7,6 @@
 
 using namespace kolize::test;
 using nlohmann::json;
-
-namespace {
-
-// Boxes that meet in a room.
-const std::string crowd = R"([step]
-dt = 0.01
-time = 1
-[[shape]]
-name = "brick"
-kind = "box"
-half_extents = [0.2, 0.5, 0.9]
-[[body]]
-shape = "brick"
-mass = 1
-position = [-1.2, 0, 0]
-velocity = [3, 2, 1]
-angular_velocity = [1, 2, 3]
-[[body]]
-shape = "brick"
-mass = 1
-position = [1.2, 0, 0]
-velocity = [-3, 1, 1]
-[[room]]
-min = [-2, -2, -2]
-max = [2, 2, 2]
-)";
-
-}  // namespace
 
 TEST_CASE("run --replay repeats a recording to the same bits, with any broadphase and number of threads",
           "[cli][record]") {

@@ -1,36 +1,11 @@
 // kolize view in a window, worked by hand.
+#include "cli/crowd.h"
 #include "render/window_visit.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 using namespace kolize::test;
-
-namespace {
-
-const std::string crowd = R"([step]
-dt = 0.01
-[[shape]]
-name = "brick"
-kind = "box"
-half_extents = [0.2, 0.5, 0.9]
-[[body]]
-shape = "brick"
-mass = 1
-position = [-1.2, 0, 0]
-velocity = [3, 2, 1]
-angular_velocity = [1, 2, 3]
-[[body]]
-shape = "brick"
-mass = 1
-position = [1.2, 0, 0]
-velocity = [-3, 1, 1]
-[[room]]
-min = [-2, -2, -2]
-max = [2, 2, 2]
-)";
-
-}  // namespace
 
 TEST_CASE("The panel switches the broadphase while the scene runs, and the recording of it has the same bits",
           "[viewer][window]") {
