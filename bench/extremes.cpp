@@ -3,6 +3,8 @@
 #include "common.h"
 #include "gauge.h"
 
+#include <CLI/CLI.hpp>
+
 #include <cmath>
 #include <functional>
 #include <iostream>

@@ -3,6 +3,10 @@
 #include "common.h"
 #include "gauge.h"
 
+#include <nlohmann/json.hpp>
+
+#include <CLI/CLI.hpp>
+
 #include <time.h>
 
 #include <algorithm>

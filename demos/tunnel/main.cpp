@@ -4,6 +4,10 @@
 
 #include "common.h"
 
+#include <nlohmann/json.hpp>
+
+#include <CLI/CLI.hpp>
+
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 

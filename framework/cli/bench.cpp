@@ -1,5 +1,9 @@
 #include "bench.h"
 
+#include <nlohmann/json.hpp>
+
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 
 namespace kolize::cli {

@@ -2,6 +2,8 @@
 
 #include "box_workload.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <iostream>
 

@@ -1,6 +1,8 @@
 #include "bench.h"
 #include "triangle_workload.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <iostream>
 

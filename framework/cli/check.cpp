@@ -3,6 +3,10 @@
 
 #include <kolize/mesh_io.h>
 
+#include <nlohmann/json.hpp>
+
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <iostream>
 #include <stdexcept>

@@ -1,5 +1,9 @@
 #include "common.h"
 
+#include <nlohmann/json.hpp>
+
+#include <CLI/CLI.hpp>
+
 #include <unistd.h>
 
 #include <algorithm>

@@ -8,8 +8,7 @@
 #include <kolize/scene.h>
 #include <kolize/simulation.h>
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <chrono>
 #include <optional>
@@ -17,6 +16,11 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+// Declared only: both libraries take seconds to compile.
+namespace CLI {
+class App;
+}
 
 namespace kolize::cli {
 

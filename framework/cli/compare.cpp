@@ -1,6 +1,10 @@
 // kolize compare: what each of several pipelines costs in time and gives in accuracy on one scene.
 #include "comparison.h"
 
+#include <nlohmann/json.hpp>
+
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <iostream>
 #include <set>

@@ -1,5 +1,7 @@
 #include "comparison.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>

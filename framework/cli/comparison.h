@@ -4,6 +4,8 @@
 
 #include "common.h"
 
+#include <nlohmann/json.hpp>
+
 namespace kolize::cli {
 
 struct Variant {

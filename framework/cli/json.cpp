@@ -1,5 +1,7 @@
 #include "common.h"
 
+#include <nlohmann/json.hpp>
+
 #include <sys/resource.h>
 
 #include <unistd.h>
@@ -15,6 +17,7 @@ Json stage_json(const EffectiveStage& stage) {
     Json json{{"plugin", stage.plugin}};
     if (!stage.when.empty()) json["when"] = stage.when;
     for (const auto& [name, value] : stage.settings) json[name] = to_json(value);
+    if (!stage.report.empty()) json["report"] = stage.report;
     return json;
 }
 
@@ -96,6 +99,7 @@ Json to_json(const RunResult& result, const Json& pipeline) {
              {{"pairs", result.pairs},
               {"contacts", result.contacts},
               {"triangle_tests", result.triangle_tests},
+              {"failures", result.failures},
               {"events", result.events},
               {"unresolved", result.unresolved}}},
             {"accuracy", accuracy_json(result)},

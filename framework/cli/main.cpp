@@ -1,5 +1,7 @@
 #include "common.h"
 
+#include <CLI/CLI.hpp>
+
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 

@@ -5,6 +5,10 @@
 
 #include <kolize/capsule.h>
 
+#include <nlohmann/json.hpp>
+
+#include <CLI/CLI.hpp>
+
 #include <iostream>
 
 namespace kolize::cli {

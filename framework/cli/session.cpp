@@ -1,5 +1,7 @@
 #include "session.h"
 
+#include <CLI/CLI.hpp>
+
 namespace kolize::cli {
 
 void add_record_options(CLI::App& command, RecordOptions& options) {

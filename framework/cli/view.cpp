@@ -3,6 +3,8 @@
 #include "film/film.h"
 #include "viewer/viewer.h"
 
+#include <CLI/CLI.hpp>
+
 #include <iostream>
 
 namespace kolize::cli {

@@ -5,6 +5,8 @@
 
 namespace kolize {
 
+void Broadphase::choose_from(std::shared_ptr<const BroadphaseChoice>) {}
+
 void Broadphase::outline(const BroadphaseInput&, Outline&) {}
 
 namespace {

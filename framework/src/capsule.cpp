@@ -55,6 +55,8 @@ void write_body(Writer& out, const World& world, std::uint32_t body) {
     out.name("kind", world.kinds[world.kind[body]]);
     out.flag("static", world.is_static[body]);
     out.flag("removed", world.removed[body]);
+    out.flag("asleep", world.asleep[body]);
+    out.flag("reference", world.is_reference[body]);
     out.exact("position", world.position[body]);
     out.exact("orientation", world.orientation[body]);
     out.exact("velocity", world.velocity[body]);

@@ -31,6 +31,7 @@ const std::map<std::string, Field> fields = {
     {"pairs", field<&RunResult::pairs>},
     {"stuck", field<&RunResult::stuck>},
     {"triangle_tests", field<&RunResult::triangle_tests>},
+    {"failures", field<&RunResult::failures>},
     {"unresolved", field<&RunResult::unresolved>},
 };
 

@@ -10,7 +10,9 @@ namespace {
 
 constexpr std::size_t bodies_per_chunk = 512;
 
-bool moves(const World& world, std::size_t body) { return !world.is_static[body] && !world.removed[body]; }
+bool moves(const World& world, std::size_t body) {
+    return !world.is_static[body] && !world.removed[body] && !world.asleep[body];
+}
 
 bool is_turned_by_forces(const World& world, std::size_t body) {
     return world.forces.drag != 0 || !world.constant_torque[body].isZero(0);

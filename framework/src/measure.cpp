@@ -240,6 +240,7 @@ void Measure::write(const World& world, RunResult& result) const {
     result.pairs = pairs;
     result.contacts = contacts;
     result.triangle_tests = triangle_tests;
+    result.failures = failures;
     result.events = events;
     result.unresolved = unresolved;
     result.energy_initial_J = initial_.energy();
@@ -253,9 +254,15 @@ void Measure::write(const World& world, RunResult& result) const {
 }
 
 Reading Measure::reading() const {
-    return {clock.latest_us(Phase::integrate), clock.latest_us(Phase::broadphase), clock.latest_us(Phase::narrowphase),
-            clock.latest_us(Phase::response),  clock.latest_us(Phase::step),       latest_.energy(),
-            energy_drift_,                     momentum_drift_,                    angular_drift_};
+    return {clock.latest_us(Phase::integrate),
+            clock.latest_us(Phase::broadphase),
+            clock.latest_us(Phase::narrowphase),
+            clock.latest_us(Phase::response),
+            clock.latest_us(Phase::step),
+            latest_.energy(),
+            energy_drift_,
+            momentum_drift_,
+            angular_drift_};
 }
 
 }  // namespace kolize

@@ -46,7 +46,8 @@ struct Exchange {
 class Measure {
 public:
     StageClock clock;
-    std::uint64_t pairs = 0, contacts = 0, triangle_tests = 0, events = 0, unresolved = 0, steps = 0;
+    std::uint64_t pairs = 0, contacts = 0, triangle_tests = 0, events = 0, unresolved = 0, failures = 0;
+    std::uint64_t steps = 0;
 
     void start(const World& world, const std::vector<Room>& rooms, std::uint64_t expected_steps);
 

@@ -48,6 +48,8 @@ void merge(Regions& regions) {
 
 }  // namespace
 
+struct MeshNarrowphase::VolumeHierarchies {};
+
 // What one chunk of pairs works with; its rows are joined in chunk order.
 struct MeshNarrowphase::Workspace {
     TriangleHits triangles;

@@ -240,6 +240,7 @@ void Pipeline::find_contacts() {
     }
     measure.contacts += contacts.rows.size();
     measure.triangle_tests += contacts.triangle_tests;
+    measure.failures += contacts.failures;
 }
 
 void Pipeline::respond(double dt, double settle) {
@@ -327,6 +328,7 @@ bool Pipeline::add_contacts(std::size_t candidate, bool touching, double reach) 
     }
     measure.contacts += one_pair_.rows.size();
     measure.triangle_tests += one_pair_.triangle_tests;
+    measure.failures += one_pair_.failures;
     return !one_pair_.rows.empty();
 }
 

@@ -23,6 +23,8 @@ const char* to_string(ShapeKind kind) {
     case ShapeKind::box: return "box";
     case ShapeKind::half_space: return "half_space";
     case ShapeKind::mesh: return "mesh";
+    case ShapeKind::capsule: return "capsule";
+    case ShapeKind::hull: return "hull";
     }
     return "unknown";
 }

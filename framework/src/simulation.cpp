@@ -159,7 +159,7 @@ namespace {
 EffectiveStage effective(const LoadedPlugin& plugin, const Stage& stage, const std::vector<std::string>& kinds) {
     std::string when;
     for (const std::string& kind : kinds) when += (when.empty() ? "" : ",") + kind;
-    return {plugin.descriptor->name, when, effective_settings(plugin, stage)};
+    return {plugin.descriptor->name, when, effective_settings(plugin, stage), stage.report()};
 }
 
 }  // namespace

@@ -82,6 +82,8 @@ std::uint32_t World::add(const BodyDescription& body) {
     kind.push_back(intern_kind(body.kind));
     is_static.push_back(body.is_static);
     removed.push_back(0);
+    asleep.push_back(0);
+    is_reference.push_back(body.is_reference);
     name.push_back(body.name);
     return id;
 }

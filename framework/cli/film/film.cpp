@@ -3,6 +3,8 @@
 #include "read_png.h"
 #include "view.h"
 
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>

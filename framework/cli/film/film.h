@@ -7,9 +7,11 @@
 #include <kolize/scene.h>
 #include <kolize/simulation.h>
 
-#include <CLI/CLI.hpp>
-
 #include <functional>
+
+namespace CLI {
+class App;
+}
 
 namespace kolize::cli {
 

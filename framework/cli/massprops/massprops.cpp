@@ -6,6 +6,10 @@
 
 #include <kolize/mesh_io.h>
 
+#include <nlohmann/json.hpp>
+
+#include <CLI/CLI.hpp>
+
 #include <unistd.h>
 
 #include <iostream>

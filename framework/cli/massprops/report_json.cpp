@@ -1,5 +1,7 @@
 #include "massprops/result.h"
 
+#include <nlohmann/json.hpp>
+
 namespace kolize::cli {
 namespace {
 

@@ -2,6 +2,8 @@
 
 #include "massprops/slow_methods.h"
 
+#include <nlohmann/json.hpp>
+
 namespace kolize::cli {
 namespace {
 

@@ -5,6 +5,7 @@
 #include <kolize/stage.h>
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,9 @@ struct BroadphaseInput {
     std::span<const std::uint8_t> is_static;
     // Changes whenever rows were added, removed or renumbered, or a static row moved.
     std::uint64_t generation = 0;
+    // 1 where the row's box is a subspace, for broadphases that divide space by bodies. Same length as bounds, or empty
+    // where there is none. Constant while `generation` stays.
+    std::span<const std::uint8_t> is_reference = {};
 };
 
 // How a broadphase divides space, for whoever looks on. World frame, m.
@@ -48,12 +52,27 @@ struct Outline {
 // - the same input gives the same set, whatever came before and however many threads the host has;
 // - non-finite or inverted boxes: std::invalid_argument that names the row;
 // - warm calls of the same size allocate nothing.
+class Broadphase;
+
+// The other broadphases that were found, for one that chooses among them. Lives as long as the stage.
+class KOLIZE_API BroadphaseChoice {
+public:
+    virtual ~BroadphaseChoice() = default;
+    virtual std::size_t size() const = 0;
+    virtual const char* name(std::size_t i) const = 0;
+    // With its default parameters, attached. Throws what making it throws.
+    virtual std::shared_ptr<Broadphase> make(std::size_t i) const = 0;
+};
+
 class KOLIZE_API Broadphase : public Stage {
 public:
     static constexpr StageKind kind = StageKind::broadphase;
 
     // Appends to `pairs`, which comes empty and keeps its capacity between steps.
     virtual void find_pairs(const BroadphaseInput& input, std::vector<Pair>& pairs) = 0;
+
+    // Called once after attach(), if the descriptor's capabilities have `chooses`.
+    virtual void choose_from(std::shared_ptr<const BroadphaseChoice> others);
 
     // Appends how find_pairs divides space for this input. Called only where the descriptor's capabilities have
     // `outline`, and only if somebody looks on: find_pairs keeps nothing for it.

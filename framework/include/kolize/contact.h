@@ -39,10 +39,11 @@ struct Contacts {
     std::vector<Contact> rows;
     std::uint64_t triangle_tests = 0;  // triangle pairs handed to the triangle test
     std::uint64_t triangle_hits = 0;   // of them, those that intersect
+    std::uint64_t failures = 0;        // pairs over which the method failed; what was answered instead, its page says
 
     void clear() {
         rows.clear();
-        triangle_tests = triangle_hits = 0;
+        triangle_tests = triangle_hits = failures = 0;
     }
 };
 

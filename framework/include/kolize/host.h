@@ -32,6 +32,9 @@ public:
         return count / grain + (count % grain != 0);
     }
 
+    // s, from some moment on, for a stage that chooses by measuring. No result may depend on it.
+    virtual double now() const = 0;
+
     // One line for the user's log, at warning level.
     virtual void warn(std::string_view message) = 0;
 

@@ -72,6 +72,8 @@ public:
     // contour  intersection segments joined into regions; a region's normal is the direction of its vector area
     // averaged the thesis's: mean of the intersection points, normal of the triangle or body that is hit
     std::string contact = "contour";
+    // Volumes of the mesh hierarchies: aabb, sphere, obb, kdop18, kdop26
+    std::string hierarchy = "aabb";
 
     template <class T, class Parameters>
     static void mesh_parameters(Parameters& p) {
@@ -86,6 +88,8 @@ private:
     std::vector<std::unique_ptr<Workspace>> workspaces_;  // one per chunk of pairs
     struct SweepWorkspace;
     std::vector<std::unique_ptr<SweepWorkspace>> sweeps_;  // likewise
+    struct VolumeHierarchies;
+    std::unique_ptr<VolumeHierarchies> volumes_;  // of the world's shapes, if `hierarchy` is not aabb
 };
 
 // Walks the two hierarchies and hands candidate triangle pairs to the test in batches.

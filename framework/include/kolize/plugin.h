@@ -17,7 +17,7 @@
 
 namespace kolize {
 
-inline constexpr std::uint32_t plugin_api = 4;  // raised when a stage contract changes
+inline constexpr std::uint32_t plugin_api = 5;  // raised when a stage contract changes
 
 constexpr std::uint64_t layout_hash();
 
@@ -44,7 +44,13 @@ struct Capabilities {
     bool time_of_impact = false;                  // narrowphase: finds when moving bodies meet (stepping `continuous`)
     Detail needs = Detail::overlap;               // response: refused with a narrowphase that gives less
     Detail uses = Detail::overlap;                // response: more than this is not computed for it (>= needs)
-    bool allocates = false;         // narrowphase: calls allocate even when warm, because a library it uses does
+    bool allocates = false;                       // calls allocate even when warm, because a library it uses does
+    bool exact = false;  // broadphase: reports no pair whose boxes are apart. Narrowphase: decides whether the surfaces
+                         // of meshes meet as real arithmetic on the coordinates in the frame of body A would
+    bool chooses = false;           // broadphase: see Broadphase::choose_from
+    bool moves = false;             // response: moves bodies apart that overlap
+    bool rests = false;             // response: models resting contact
+    bool sleeps = false;            // response: lays bodies to sleep, and wakes them
     bool friction = false;          // response: models friction; where none does, the friction of a scene has no effect
     bool bounding_spheres = false;  // response: treats the dynamic bodies that only it serves as their bounding spheres
     const char* outline = nullptr;  // broadphase: what outline() gives: "cells", "planes", "spheres"
@@ -54,9 +60,12 @@ struct Capabilities {
 struct PluginDescriptor {
     AbiTag abi;
     StageKind stage = StageKind::broadphase;
-    const char* name = nullptr;     // the word in [broadphase] plugin = "..."
-    const char* summary = nullptr;  // one line
-    const char* source = nullptr;   // paper or book, section
+    const char* name = nullptr;      // the word in [broadphase] plugin = "..."
+    const char* summary = nullptr;   // one line
+    const char* source = nullptr;    // paper or book, section
+    const char* cost = nullptr;      // time and memory, in sentences
+    const char* accuracy = nullptr;  // what it gets right, and what not
+    const char* choose = nullptr;    // when to take it, and when something else
     Capabilities capabilities;
     void (*declare)(ParameterList& list) = nullptr;
     Stage* (*create)() = nullptr;
@@ -103,6 +112,7 @@ constexpr std::uint64_t layout_hash() {
                                offsetof(Shape, mesh),
                                offsetof(Shape, moments),
                                offsetof(World, removed),
+                               offsetof(World, asleep),
                                offsetof(World, forces)})
         h = (h ^ size) * 1099511628211ull;
     return h;
@@ -123,6 +133,9 @@ struct PluginText {
     const char* name;
     const char* summary;
     const char* source;
+    const char* cost = "";
+    const char* accuracy = "";
+    const char* choose = "";
     Capabilities capabilities = {};
 };
 
@@ -133,6 +146,9 @@ constexpr PluginDescriptor describe(const PluginText& text) {
     d.name = text.name;
     d.summary = text.summary;
     d.source = text.source;
+    d.cost = text.cost;
+    d.accuracy = text.accuracy;
+    d.choose = text.choose;
     d.capabilities = text.capabilities;
     d.declare = &detail::declare<T>;
     d.create = []() -> Stage* { return new T; };

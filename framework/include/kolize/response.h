@@ -33,7 +33,8 @@ struct ResponseOutput {
 };
 
 // Contract (held by the conformance suite for every plugin):
-// - writes velocities and angular velocities of the dynamic bodies in its contacts, events and impulses; nothing else;
+// - writes velocities and angular velocities of the dynamic bodies in its contacts, events and impulses; if it `moves`,
+//   their positions and orientations too, to part what overlaps; if it `sleeps`, their World::asleep; nothing else;
 // - sees all contacts of its rule in a step at once, and depends on their order only through the canonical one;
 // - reports every impulse it gives, so that momentum exchanged with static bodies can be accounted for;
 // - finite input gives finite output; warm calls allocate nothing.
@@ -42,6 +43,12 @@ public:
     static constexpr StageKind kind = StageKind::response;
 
     virtual void respond(const ResponseInput& input, World& world, ResponseOutput& output) = 0;
+
+    // What it remembers from one step to the next, as words: save() appends, restore() takes them back in another
+    // object with the same parameters, which then goes on to the same bits. restore() with no words forgets.
+    // Throws std::invalid_argument for words that save() cannot have given.
+    virtual void save(std::vector<std::uint64_t>& words) const;
+    virtual void restore(std::span<const std::uint64_t> words);
 };
 
 }  // namespace kolize

@@ -44,6 +44,7 @@ struct PipelineConfig {
     StageConfig broadphase;
     StageConfig narrowphase;
     std::string walls = "auto";  // narrowphase.walls: auto | half_space | box | mesh
+    std::string cull = "none";   // narrowphase.cull: none | sphere | aabb | obb | kdop18 | kdop26
     std::vector<ResponseRule> responses;
     StepConfig step;
     LedgerConfig ledger;

@@ -31,7 +31,7 @@ struct RunResult {
     double time = 0;  // simulated, s
     int threads = 1;
     StageTime integrate, broadphase, narrowphase, response, step;
-    std::uint64_t pairs = 0, contacts = 0, triangle_tests = 0, events = 0, unresolved = 0;
+    std::uint64_t pairs = 0, contacts = 0, triangle_tests = 0, events = 0, unresolved = 0, failures = 0;
     double energy_initial_J = 0, energy_final_J = 0, energy_drift = 0, momentum_drift = 0, angular_momentum_drift = 0;
     double max_penetration_m = 0;
     std::uint64_t escaped = 0, stuck = 0;
@@ -50,6 +50,7 @@ struct EffectiveStage {
     std::string plugin;
     std::string when;  // response rules: "missile", "ball,ball", or "" for every contact
     std::vector<std::pair<std::string, Value>> settings;
+    std::string report;  // see Stage::report
 };
 
 // What a stage did that it may not do: the first entry of the ledger that does not balance.

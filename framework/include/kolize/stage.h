@@ -4,6 +4,7 @@
 #include <kolize/host.h>
 
 #include <cstdint>
+#include <string>
 
 namespace kolize {
 
@@ -18,6 +19,8 @@ class KOLIZE_API Stage {
 public:
     virtual ~Stage() = default;
     virtual void attach(Host& host) { host_ = &host; }
+    // What it chose or found out while running, and why, in one sentence for the user; "" if there is nothing to say.
+    virtual std::string report() const { return {}; }
 
 protected:
     Host& host() const { return *host_; }

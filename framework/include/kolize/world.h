@@ -21,6 +21,7 @@ struct BodyDescription {
     std::uint32_t material = 0;
     std::string kind = "body";  // free word that response rules refer to
     bool is_static = false;
+    bool is_reference = false;             // its bounds are a subspace for broadphases that divide space by bodies
     double mass = 0;                       // kg; 0: density times volume
     Vec3 position = Vec3::Zero();          // of the model frame's origin, m
     Quat orientation = Quat::Identity();   // model frame to world
@@ -57,6 +58,10 @@ struct KOLIZE_API World {
     std::vector<std::uint32_t> kind;      // into kinds
     std::vector<std::uint8_t> is_static;  // 1: never moves
     std::vector<std::uint8_t> removed;    // 1: taken out by a response; takes part in nothing any more
+    // 1: at rest until something touches it: not integrated, and two of them are no pair. Set and cleared by a response
+    // that sleeps, and cleared by whatever is put in between two steps. Its velocities are 0.
+    std::vector<std::uint8_t> asleep;
+    std::vector<std::uint8_t> is_reference;  // see BodyDescription
     std::vector<std::string> name;
 
     std::vector<Shape> shapes;

@@ -112,6 +112,8 @@ void read_body(const toml::table& table, World& world) {
         reader.refuse("shape", "is a half_space, which only a static body can have");
     world.is_static.push_back(is_static);
     world.removed.push_back(reader.boolean("removed", false));
+    world.asleep.push_back(reader.boolean("asleep", false));
+    world.is_reference.push_back(reader.boolean("reference", false));
     read_motion(reader, world, is_static);
     reader.finish();
 }
