@@ -142,11 +142,11 @@ void Ledger::book(const World& world, std::span<const Contact> contacts) {
             Received& received = received_[body];
             if (!received.in_contact) involved_.push_back(body);
             received.in_contact = true;
-            const Vec3 impulse = sign * c.impulse * c.normal;
+            const Vec3 impulse = sign * c.total_impulse();
             received.impulse += impulse;
-            received.moment += arm.cross(impulse);
+            received.moment += arm.cross(impulse) + sign * c.couple;
             received.impulses += impulse.norm();
-            received.moments += arm.norm() * impulse.norm();
+            received.moments += arm.norm() * impulse.norm() + c.couple.norm();
         };
         add(c.a, c.arm_a, -1);
         add(c.b, c.arm_b, 1);

@@ -148,12 +148,14 @@ void Measure::after_response(const World& world, const std::vector<Contact>& row
         max_depth_ = std::max(max_depth_, c.depth);
         const bool overlaps = c.depth > 0 || c.normal.isZero(0);  // no more than that may have been asked for
         if (overlaps && (touching_.empty() || touching_.back() != Pair{c.a, c.b})) touching_.push_back({c.a, c.b});
-        if (c.impulse == 0 || world.is_static[c.a] == world.is_static[c.b]) continue;
+        if (world.is_static[c.a] == world.is_static[c.b]) continue;
         const bool on_a = world.is_static[c.b];
         const std::uint32_t body = on_a ? c.a : c.b;
-        const Vec3 impulse = (on_a ? -c.impulse : c.impulse) * c.normal;
+        const double sign = on_a ? -1 : 1;
+        const Vec3 impulse = sign * c.total_impulse();
         exchange_.impulse += impulse;
-        exchange_.angular_impulse += (world.position[body] - reference_ + (on_a ? c.arm_a : c.arm_b)).cross(impulse);
+        exchange_.angular_impulse +=
+            (world.position[body] - reference_ + (on_a ? c.arm_a : c.arm_b)).cross(impulse) + sign * c.couple;
     }
 }
 

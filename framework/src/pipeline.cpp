@@ -278,8 +278,12 @@ void Pipeline::respond_with(Rule& rule, double dt, double settle) {
         [&] { return blamed_pair(rule, dt); });
     require_finite_response(rule, output.dissipated_J, first_event);
     if (ledger) ledger->after_response(world, rule.contacts, output.dissipated_J, settle > 0, plugin);
-    for (std::size_t i = 0; i < rule.contacts.size(); ++i)
-        contacts.rows[rule.rows[i]].impulse = rule.contacts[i].impulse;
+    for (std::size_t i = 0; i < rule.contacts.size(); ++i) {
+        Contact& row = contacts.rows[rule.rows[i]];
+        row.impulse = rule.contacts[i].impulse;
+        row.friction = rule.contacts[i].friction;
+        row.couple = rule.contacts[i].couple;
+    }
     measure.unresolved += output.unresolved;
     for (Contact& c : rule.contacts)
         if (settle > 0) c.depth = 0;  // it was no depth: nothing overlaps

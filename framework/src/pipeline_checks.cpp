@@ -82,7 +82,8 @@ void Pipeline::refuse_motion(const std::string& what) const { fail("integrator",
 void Pipeline::require_finite_response(const Rule& rule, double dissipated_J, std::size_t first_event) const {
     const auto refuse = [&](const std::string& what) { fail("response", rule.plugin->descriptor->name, what); };
     for (const Contact& c : rule.contacts) {
-        if (!std::isfinite(c.impulse)) refuse("the impulse of a contact is not finite" + pair_blame(world, c.a, c.b));
+        if (!is_finite(c.total_impulse()) || !is_finite(c.couple))
+            refuse("the impulse of a contact is not finite" + pair_blame(world, c.a, c.b));
         for (const std::uint32_t body : {c.a, c.b})
             if (const char* quantity = unusable_quantity(world.state(body)))
                 refuse(not_finite(world, quantity, body) + pair_blame(world, c.a, c.b));

@@ -31,7 +31,12 @@ struct Contact {
     // primitives: how far B has to move along it to separate). `manifold`: the chord at this point. 0 where bodies
     // touch at the time of impact. Of bodies that rest on each other see ResponseInput::settle.
     double depth = 0;
-    double impulse = 0;  // written by the response: normal impulse on B, N s, >= 0
+    // Written by the response: what B got here; A got the opposite.
+    double impulse = 0;            // along the normal, N s, >= 0
+    Vec3 friction = Vec3::Zero();  // across it, at the contact point, N s
+    Vec3 couple = Vec3::Zero();    // angular impulse without a force (rolling, drilling, sticking), N m s
+
+    Vec3 total_impulse() const { return impulse * normal + friction; }
 };
 
 // What one narrowphase call gives. Cleared, never freed, between steps.

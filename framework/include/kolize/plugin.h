@@ -108,6 +108,7 @@ constexpr std::uint64_t layout_hash() {
                                offsetof(PluginDescriptor, create),
                                offsetof(Contact, normal),
                                offsetof(Contact, impulse),
+                               offsetof(Contact, friction),
                                offsetof(HierarchyNode, first),
                                offsetof(Shape, mesh),
                                offsetof(Shape, moments),

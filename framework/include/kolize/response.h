@@ -15,7 +15,7 @@ struct Event {
 };
 
 struct ResponseInput {
-    std::span<Contact> contacts;        // those that the rule takes, in canonical order; `impulse` is to be written
+    std::span<Contact> contacts;  // those that the rule takes, in canonical order; see Contact for what is written
     std::span<const std::uint8_t> hit;  // per contact: bit 0 set if body A fits the rule's `when`, bit 1 for body B
     double dt = 0;                      // s
     // s. Above 0 the bodies rest on each other for so long. Nothing bounces then, whatever the restitution, and `depth`

@@ -86,9 +86,9 @@ public:
             double scale = 0;
             for (const Contact& c : answer.scene.contacts) {
                 if (!(c.impulse >= 0)) violate("an impulse is negative or not a number", scene);
-                momentum[c.a] -= c.impulse * c.normal;
-                momentum[c.b] += c.impulse * c.normal;
-                scale += c.impulse;
+                momentum[c.a] -= c.total_impulse();
+                momentum[c.b] += c.total_impulse();
+                scale += c.total_impulse().norm();
             }
             for (std::size_t i = 0; i < momentum.size(); ++i) {
                 if (scene.world.is_static[i]) continue;
