@@ -2,6 +2,7 @@
 #include "demos/tunnel_games.h"
 
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 using namespace kolize;
 using namespace kolize::test;
