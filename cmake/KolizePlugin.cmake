@@ -13,7 +13,15 @@ function(kolize_add_plugin stage name)
     CXX_VISIBILITY_PRESET hidden
     LIBRARY_OUTPUT_DIRECTORY ${KOLIZE_PLUGIN_DIRECTORY}
     LINK_DEPENDS ${KOLIZE_PLUGIN_VERSION_SCRIPT}
+    DEFINE_SYMBOL ""  # no macro of its own, so that all plugins can share one precompiled header
     INSTALL_RPATH "$ORIGIN/..")
+  get_property(others GLOBAL PROPERTY KOLIZE_PLUGINS)
+  if(others)
+    list(GET others 0 first)
+    target_precompile_headers(${target} REUSE_FROM ${first})
+  else()
+    target_precompile_headers(${target} PRIVATE <kolize/plugin.h>)
+  endif()
   install(TARGETS ${target} LIBRARY DESTINATION lib/kolize)
   set_property(GLOBAL APPEND PROPERTY KOLIZE_PLUGINS ${target})
 endfunction()
