@@ -81,6 +81,18 @@ void write_room(Writer& out, const Room& room, bool has_walls) {
     out.plain("material", std::int64_t(room.material));
 }
 
+// Of a response, as hexadecimal words.
+void write_memory(Writer& out, const ResponseMemory& memory) {
+    out.table("[[capsule.memory]]");
+    out.name("plugin", memory.plugin);
+    if (memory.words.empty()) return;
+    out.line("words = \"\"\"");
+    char digits[16];
+    for (const std::uint64_t word : memory.words)
+        out.line(std::string(digits, std::to_chars(digits, digits + sizeof digits, word, 16).ptr));
+    out.line("\"\"\"");
+}
+
 void write_camera(Writer& out, const CameraConfig& camera) {
     out.line("camera = { eye = " + list(camera.eye) + ", target = " + list(camera.target) + ", up = " +
              list(camera.up) + ", fov_deg = " + to_string(Value(camera.field_of_view * 180 / std::numbers::pi)) + " }");
@@ -127,6 +139,11 @@ void write_world(Writer& out, const Scene& scene, const std::string& reason) {
     for (const Shape& shape : scene.world.shapes) write_shape(out, shape);
     for (std::uint32_t body = 0; body < scene.world.size(); ++body) write_body(out, scene.world, body);
     for (const Room& room : scene.rooms) write_room(out, room, has_walls);
+    bool any_memory = false;
+    for (const ResponseMemory& memory : scene.memory)
+        if (!memory.words.empty()) any_memory = true;
+    for (const ResponseMemory& memory : scene.memory)
+        if (any_memory) write_memory(out, memory);
 }
 
 std::string capsule_text(const Scene& scene, const std::string& reason) {

@@ -57,6 +57,7 @@ Pipeline::Pipeline(const Scene& scene, const PluginLibrary& plugins, Host& host,
         add_walls(world, scene.rooms[i], walls, i);
     negotiate(scene.pipeline, plugins);
     use_bounding_spheres();
+    restore_memory(scene);
     narrowphase->prepare(world);
     number_rows();
     reserve();
@@ -214,6 +215,8 @@ void Pipeline::route_pairs() {
 }
 
 bool Pipeline::route(const Pair& pair) {
+    const auto rests = [&](std::uint32_t body) { return world.is_static[body] || world.asleep[body]; };
+    if (rests(pair.a) && rests(pair.b)) return false;
     const std::uint32_t rule = rule_of_kinds_[world.kind[pair.a] * world.kinds.size() + world.kind[pair.b]];
     if (rule == no_rule) return false;
     routed_.push_back(pair);
@@ -277,6 +280,8 @@ void Pipeline::respond_with(Rule& rule, double dt, double settle) {
         },
         [&] { return blamed_pair(rule, dt); });
     require_finite_response(rule, output.dissipated_J, first_event);
+    const bool moves = rule.plugin->descriptor->capabilities.moves;
+    if (moves) swap_places(rule);  // impulses are accounted for where they were given
     if (ledger) ledger->after_response(world, rule.contacts, output.dissipated_J, settle > 0, plugin);
     for (std::size_t i = 0; i < rule.contacts.size(); ++i) {
         Contact& row = contacts.rows[rule.rows[i]];
@@ -288,6 +293,20 @@ void Pipeline::respond_with(Rule& rule, double dt, double settle) {
     for (Contact& c : rule.contacts)
         if (settle > 0) c.depth = 0;  // it was no depth: nothing overlaps
     measure.after_response(world, rule.contacts, output.dissipated_J);
+    if (moves) measure.change(world, [&] { swap_places(rule); });
+}
+
+// Exchanges the places that the rule's bodies have with those that they had before, or back again.
+void Pipeline::swap_places(Rule& rule) {
+    swapped_.assign(world.size(), 0);
+    for (std::size_t i = 0; i < rule.before.size(); ++i) {
+        const Contact& c = rule.contacts[i / 2];
+        const std::uint32_t body = i % 2 ? c.b : c.a;
+        if (swapped_[body]) continue;
+        swapped_[body] = 1;
+        std::swap(world.position[body], rule.before[i].position);
+        std::swap(world.orientation[body], rule.before[i].orientation);
+    }
 }
 
 void Pipeline::remove_bodies() {
@@ -298,6 +317,7 @@ void Pipeline::remove_bodies() {
         world.removed[event.body] = 1;
         any = true;
     }
+    if (any) wake_all();  // of what lay on them
     if (any) number_rows();
 }
 

@@ -76,6 +76,8 @@ public:
     void put_in(const RemoveInput& input);
     // Goes on where another pipeline of the same scene has come to; the walls of the rooms are each pipeline's own.
     void take_over(const Pipeline& before);
+    // What the rules' responses remember, rule by rule.
+    void save_memory(std::vector<ResponseMemory>& memory) const;
 
     void outline(Outline& outline) const;
     void find_crossings(std::vector<CrossingLine>& crossings) const;
@@ -98,6 +100,8 @@ private:
     static constexpr std::uint32_t no_rule = ~0u, no_row = ~0u;
 
     void require_dynamic(std::uint32_t body) const;
+    void wake_all() { world.asleep.assign(world.size(), 0); }
+    void restore_memory(const Scene& scene);
     void negotiate(const PipelineConfig& config, const PluginLibrary& plugins);
     void use_bounding_spheres();
     void reserve();
@@ -111,6 +115,7 @@ private:
     void require_fit(const Contact& contact, const Pair& asked, Detail detail, bool touching) const;
     void find_contacts();
     void respond_with(Rule& rule, double dt, double settle);
+    void swap_places(Rule& rule);
     void remove_bodies();
 
     // In pipeline_checks.cpp: nothing that is not a number leaves the stage that made it.
@@ -149,6 +154,7 @@ private:
     Contacts one_pair_;
     std::vector<std::uint8_t> is_partner_;  // by body
     std::vector<BodyState> before_;         // by body
+    std::vector<std::uint8_t> swapped_;     // by body
     struct Saved {
         std::vector<Vec3> position, velocity, angular_velocity;
         std::vector<Quat> orientation;

@@ -25,12 +25,14 @@ void Pipeline::put_in(const ForcesInput& input) {
     require_finite(forces.gravity.allFinite() && forces.wind.allFinite(), "gravity and wind");
     if (!(forces.drag >= 0 && forces.drag < infinity))
         throw std::invalid_argument("drag must be finite and not below 0");
+    wake_all();
     measure.change(world, [&] { world.forces = forces; });
 }
 
 void Pipeline::put_in(const LoadInput& input) {
     require_dynamic(input.body);
     require_finite(input.force.allFinite() && input.torque.allFinite(), "force and torque");
+    wake_all();
     measure.change(world, [&] {
         world.constant_force[input.body] = input.force;
         world.constant_torque[input.body] = input.torque;
@@ -45,6 +47,7 @@ void Pipeline::put_in(const PlaceInput& input) {
                    "what a body is given");
     if (!(std::abs(state.orientation.norm() - 1) <= 1e-9))
         throw std::invalid_argument("an orientation must be a quaternion of length 1");
+    wake_all();
     measure.change(world, [&] {
         world.set_state(input.body, state);
         world.removed[input.body] = 0;
@@ -54,6 +57,7 @@ void Pipeline::put_in(const PlaceInput& input) {
 
 void Pipeline::put_in(const RemoveInput& input) {
     require_dynamic(input.body);
+    wake_all();
     measure.change(world, [&] { world.removed[input.body] = 1; });
     number_rows();
 }
@@ -66,11 +70,40 @@ void Pipeline::take_over(const Pipeline& before) {
         world.constant_torque[body] = before.world.constant_torque[body];
     }
     world.forces = before.world.forces;
+    for (std::size_t i = 0; i < rules.size() && i < before.rules.size(); ++i) {
+        if (rules[i].plugin != before.rules[i].plugin) continue;
+        std::vector<std::uint64_t> words;
+        before.rules[i].stage->save(words);
+        rules[i].stage->restore(words);
+    }
     first_step_ = before.step_number();
     number_rows();
     measure = Measure();
     measure.start(world, rooms_, expected_steps_);
     if (ledger) ledger.emplace(ledger_config_, world);
+}
+
+void Pipeline::save_memory(std::vector<ResponseMemory>& memory) const {
+    memory.resize(rules.size());
+    for (std::size_t i = 0; i < rules.size(); ++i) {
+        memory[i].plugin = rules[i].plugin->descriptor->name;
+        memory[i].words.clear();
+        rules[i].stage->save(memory[i].words);
+    }
+}
+
+// Of another plugin in its place nothing is kept.
+void Pipeline::restore_memory(const Scene& scene) {
+    for (std::size_t i = 0; i < scene.memory.size() && i < rules.size(); ++i) {
+        const ResponseMemory& memory = scene.memory[i];
+        if (memory.plugin != rules[i].plugin->descriptor->name) continue;
+        try {
+            rules[i].stage->restore(memory.words);
+        } catch (const std::exception& error) {
+            throw Error(scene.file + ": [[capsule.memory]] " + std::to_string(i) + " is not of response '" +
+                        memory.plugin + "': " + error.what());
+        }
+    }
 }
 
 void Pipeline::outline(Outline& outline) const {

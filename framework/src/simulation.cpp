@@ -14,15 +14,19 @@ struct StepStart {
     std::uint64_t step = 0;
     std::vector<Vec3> position, velocity, angular_velocity;
     std::vector<Quat> orientation;
-    std::vector<std::uint8_t> removed;
+    std::vector<std::uint8_t> removed, asleep;
+    std::vector<ResponseMemory> memory;
 
-    void take(const World& world, std::uint64_t number) {
-        step = number;
+    void take(const Pipeline& pipeline) {
+        const World& world = pipeline.world;
+        step = pipeline.step_number();
         position = world.position;  // assignment re-uses the buffers
         velocity = world.velocity;
         angular_velocity = world.angular_velocity;
         orientation = world.orientation;
         removed = world.removed;
+        asleep = world.asleep;
+        pipeline.save_memory(memory);
     }
     void give(World& world) const {
         world.position = position;
@@ -30,6 +34,7 @@ struct StepStart {
         world.angular_velocity = angular_velocity;
         world.orientation = orientation;
         world.removed = removed;
+        world.asleep = asleep;
     }
 };
 
@@ -44,7 +49,7 @@ struct Simulation::State {
           pipeline(scene, plugins, host, expected_steps),
           stepping(make_stepping(scene.pipeline.step)),
           keeps_steps(scene.pipeline.ledger.check) {
-        start.take(pipeline.world, pipeline.step_number());
+        start.take(pipeline);
     }
 
     const PipelineConfig& config() const { return scene.pipeline; }
@@ -67,7 +72,7 @@ Simulation::~Simulation() = default;
 void Simulation::step() {
     Pipeline& pipeline = state_->pipeline;
     const double dt = state_->config().step.dt;
-    if (state_->keeps_steps && !first_break()) state_->start.take(pipeline.world, pipeline.step_number());
+    if (state_->keeps_steps && !first_break()) state_->start.take(pipeline);
     pipeline.begin_step(dt);
     const auto start = StageClock::Clock::now();
     state_->stepping->step(pipeline, dt);
@@ -87,10 +92,11 @@ void Simulation::apply(const Input& input) {
 void Simulation::use(const PipelineConfig& pipeline) {
     Scene scene = state_->scene;
     scene.pipeline = pipeline;
+    scene.memory.clear();
     auto next = std::make_unique<State>(scene, state_->plugins, state_->host, state_->expected_steps);
     next->pipeline.take_over(state_->pipeline);
     next->keeps_steps |= state_->keeps_steps;
-    next->start.take(next->pipeline.world, next->pipeline.step_number());
+    next->start.take(next->pipeline);
     state_ = std::move(next);
 }
 
@@ -149,6 +155,7 @@ std::uint64_t Simulation::state_hash() const {
         hash.add_all(world.orientation[body].coeffs());
         hash.add_all(world.velocity[body]);
         hash.add_all(world.angular_velocity[body]);
+        if (world.asleep[body]) hash.add(std::uint64_t(1));
         hash.add(std::uint64_t(world.removed[body]));
     }
     return hash.value();
@@ -213,6 +220,7 @@ Scene Simulation::capture() const {
     if (!scene.rooms.empty()) scene.pipeline.walls = walls();
     scene.capsule_step = step_number();
     scene.render = state_->scene.render;
+    state_->pipeline.save_memory(scene.memory);
     return scene;
 }
 
@@ -220,6 +228,7 @@ Scene Simulation::capture_failure() const {
     Scene scene = capture();
     state_->start.give(scene.world);
     scene.capsule_step = state_->start.step;
+    scene.memory = state_->start.memory;
     return scene;
 }
 

@@ -74,12 +74,19 @@ struct RenderConfig {
     std::vector<TextureConfig> textures;
 };
 
+// What a response remembers from one step to the next.
+struct ResponseMemory {
+    std::string plugin;
+    std::vector<std::uint64_t> words;  // see Response::save
+};
+
 struct Scene {
     std::string file;  // as the user named it
     World world;       // bodies of [[body]]; rooms become bodies when a simulation is made
     std::vector<Room> rooms;
     PipelineConfig pipeline;
     std::optional<std::uint64_t> capsule_step;  // of a capsule: the step that comes next; walls are bodies already
+    std::vector<ResponseMemory> memory;         // of a capsule: one for each rule, or none at all
     std::vector<std::string> warnings;  // what the files ask for and is not modelled or not read, a sentence each
     RenderConfig render;
 };

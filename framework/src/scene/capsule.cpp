@@ -4,6 +4,8 @@
 #include "parts.h"
 
 #include <algorithm>
+#include <charconv>
+#include <sstream>
 #include <stdexcept>
 
 namespace kolize::config {
@@ -135,6 +137,22 @@ Room read_room(const toml::table& table, bool has_walls, const World& world) {
     return room;
 }
 
+ResponseMemory read_memory(const toml::table& table) {
+    TableReader reader(table, "[[capsule.memory]]");
+    ResponseMemory memory{reader.text("plugin", ""), {}};
+    const std::string text = reader.text("words", "");
+    const SourceLocation where = reader.where("words");
+    reader.finish();
+    std::istringstream stream(text);
+    for (std::string word; stream >> word;) {
+        const char* const end = word.data() + word.size();
+        const auto [stop, error] = std::from_chars(word.data(), end, memory.words.emplace_back(), 16);
+        if (error != std::errc() || stop != end)
+            throw Error(where, "words must be hexadecimal numbers of 64 bits, one is '" + word + "'");
+    }
+    return memory;
+}
+
 void refuse_world(const toml::table& config) {
     for (const char* other : {"world", "material", "shape", "body", "room"})
         if (const toml::node* node = config.get(other))
@@ -149,7 +167,7 @@ std::optional<std::uint64_t> read_head(const toml::table& capsule) {
     const bool has_walls = reader.boolean("walls", true);
     const std::int64_t step = reader.integer("step", 0, {0, has_walls ? 1e15 : 0});
     for (const char* told : {"scene", "reason"}) reader.text(told, "");
-    for (const char* part : {"forces", "material", "shape", "body", "room"}) reader.has(part);
+    for (const char* part : {"forces", "material", "shape", "body", "room", "memory"}) reader.has(part);
     reader.finish();
     if (!has_walls) return std::nullopt;
     return static_cast<std::uint64_t>(step);
@@ -168,6 +186,7 @@ void read_capsule(const toml::table& config, Scene& scene) {
     for (const toml::table* part : tables(capsule, "body")) read_body(*part, world);
     for (const toml::table* part : tables(capsule, "room"))
         scene.rooms.push_back(read_room(*part, scene.capsule_step.has_value(), world));
+    for (const toml::table* part : tables(capsule, "memory")) scene.memory.push_back(read_memory(*part));
 }
 
 }  // namespace kolize::config
