@@ -69,6 +69,7 @@ Json pipeline_json(const Simulation& simulation) {
     for (const EffectiveStage& stage : simulation.responses()) responses.push_back(stage_json(stage));
     Json narrowphase = stage_json(simulation.narrowphase());
     narrowphase["walls"] = simulation.walls();
+    narrowphase["cull"] = simulation.pipeline().cull;
     const StepConfig& step = simulation.step_config();
     return {{"broadphase", stage_json(simulation.broadphase())},
             {"narrowphase", narrowphase},

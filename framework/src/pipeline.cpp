@@ -59,6 +59,7 @@ Pipeline::Pipeline(const Scene& scene, const PluginLibrary& plugins, Host& host,
     use_bounding_spheres();
     restore_memory(scene);
     narrowphase->prepare(world);
+    if (scene.pipeline.cull != "none") cull_.emplace(scene.pipeline.cull, world);
     number_rows();
     reserve();
     measure.start(world, scene.rooms, expected_steps);
@@ -159,6 +160,7 @@ void Pipeline::detect() {
     update_bounds();
     find_pairs();
     route_pairs();
+    if (cull_) cull_pairs();
     find_contacts();
 }
 
@@ -223,6 +225,22 @@ bool Pipeline::route(const Pair& pair) {
     detail_.push_back(rules[rule].detail);
     rule_.push_back(rule);
     return true;
+}
+
+void Pipeline::cull_pairs() {
+    const auto start = StageClock::Clock::now();
+    cull_->place(world, host_);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < routed_.size(); ++i) {
+        if (cull_->certainly_apart(routed_[i])) continue;
+        routed_[kept] = routed_[i];
+        detail_[kept] = detail_[i];
+        rule_[kept++] = rule_[i];
+    }
+    routed_.resize(kept);
+    detail_.resize(kept);
+    rule_.resize(kept);
+    measure.clock.add(Phase::narrowphase, StageClock::Clock::now() - start);
 }
 
 void Pipeline::find_contacts() {

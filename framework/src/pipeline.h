@@ -1,6 +1,7 @@
 // One ring of stages around one world: what a stepping strategy drives.
 #pragma once
 
+#include "cull.h"
 #include "ledger.h"
 #include "measure.h"
 
@@ -111,6 +112,7 @@ private:
     void add_half_space_pairs();
     bool reaches_behind(const Aabb& box, std::uint32_t wall) const;
     void route_pairs();
+    void cull_pairs();
     bool route(const Pair& pair);
     void require_fit(const Contact& contact, const Pair& asked, Detail detail, bool touching) const;
     void find_contacts();
@@ -151,6 +153,7 @@ private:
     std::vector<Pair> routed_;  // pairs that a rule takes and whose boxes do overlap
     std::vector<Detail> detail_;
     std::vector<std::uint32_t> rule_;  // by routed pair
+    std::optional<Cull> cull_;
     Contacts one_pair_;
     std::vector<std::uint8_t> is_partner_;  // by body
     std::vector<BodyState> before_;         // by body

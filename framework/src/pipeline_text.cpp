@@ -42,6 +42,7 @@ void write_pipeline(Writer& out, const PipelineConfig& pipeline, const std::stri
     write_stage(out, "[" + prefix + "broadphase]", pipeline.broadphase);
     write_stage(out, "[" + prefix + "narrowphase]", pipeline.narrowphase);
     out.plain("walls", pipeline.walls);
+    out.plain("cull", pipeline.cull);
     for (const ResponseRule& rule : pipeline.responses) {
         write_stage(out, "[[" + prefix + "response]]", rule.stage);
         write_when(out, rule.kinds);

@@ -1,30 +1,15 @@
 #include "bounding_volumes/local_points.h"
+#include "bounding_volumes/slab_reach.h"
 
 #include <kolize/bounding_volumes.h>
 #include <kolize/error.h>
 
 #include <algorithm>
-#include <array>
 #include <string>
 
 namespace kolize {
 
 namespace {
-
-// The axes, the middles of the edges of a cube and its corners, one of each opposite pair.
-constexpr std::array<std::array<int, 3>, 13> slab_directions{{{1, 0, 0},
-                                                              {0, 1, 0},
-                                                              {0, 0, 1},
-                                                              {1, 1, 0},
-                                                              {1, -1, 0},
-                                                              {1, 0, 1},
-                                                              {1, 0, -1},
-                                                              {0, 1, 1},
-                                                              {0, 1, -1},
-                                                              {1, 1, 1},
-                                                              {1, 1, -1},
-                                                              {1, -1, 1},
-                                                              {1, -1, -1}}};
 
 // The points p with normal . p <= offset; the normal is a unit vector.
 struct HalfSpace {
@@ -104,7 +89,7 @@ SlabPolytope slab_polytope(std::span<const Vec3> points, int planes) {
     require_points(points);
     SlabPolytope polytope;
     for (int i = 0; i < planes / 2; ++i) {
-        const Vec3 direction(slab_directions[i][0], slab_directions[i][1], slab_directions[i][2]);
+        const Vec3 direction = slab_direction(i);
         double minimum = infinity, maximum = -infinity;
         for (const Vec3& p : points) {
             minimum = std::min(minimum, direction.dot(p));

@@ -132,11 +132,13 @@ public:
             const Overlap expected = reference_overlap(world);
             if (expected == Overlap::too_close_to_tell) return;
             const bool found = !find_pair(world, gives()).rows.empty();
+            if (found && answers_for_volumes()) return;
             if (found != (expected == Overlap::overlapping))
                 violate(found ? "a contact where surfaces are apart" : "no contact where surfaces intersect", world);
             ++(found ? overlapping : apart);
         });
-        if (overlapping < 10 || apart < 10) throw Violation("the suite's own input does not cover both answers");
+        if ((overlapping < 10 && !answers_for_volumes()) || apart < 10)
+            throw Violation("the suite's own input does not cover both answers");
     }
 
     void same_bits_again() const {
@@ -196,6 +198,9 @@ public:
     }
 
 private:
+    // What it finds to overlap are bounding volumes, of bodies that may be apart.
+    bool answers_for_volumes() const { return plugin_.descriptor->capabilities.bounding_spheres; }
+
     World solids(std::mt19937_64& random) const {
         return random_two_solids(random, plugin_.descriptor->capabilities.shape_kinds);
     }

@@ -124,7 +124,7 @@ std::vector<StageTable> stage_tables(toml::table& config, const PluginDefaults& 
 }
 
 bool belongs_to_framework(StageKind stage, std::string_view key) {
-    return key == "plugin" || (stage == StageKind::narrowphase && key == "walls") ||
+    return key == "plugin" || (stage == StageKind::narrowphase && (key == "walls" || key == "cull")) ||
            (stage == StageKind::response && key == "when") ||
            (stage == StageKind::render && (key == "camera" || key == "light" || key == "texture"));
 }

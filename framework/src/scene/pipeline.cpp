@@ -84,9 +84,10 @@ PipelineConfig read_pipeline(const toml::table& config, const PluginDefaults& de
     const toml::table& narrowphase = table(config, "narrowphase");
     PipelineConfig pipeline;
     pipeline.broadphase = read_stage(table(config, "broadphase"), "[broadphase]", defaults.broadphase, {});
-    pipeline.narrowphase = read_stage(narrowphase, "[narrowphase]", defaults.narrowphase, {"walls"});
-    pipeline.walls = TableReader(narrowphase, "[narrowphase]")
-                         .choice("walls", pipeline.walls, {"auto", "half_space", "box", "mesh"});
+    pipeline.narrowphase = read_stage(narrowphase, "[narrowphase]", defaults.narrowphase, {"walls", "cull"});
+    TableReader reader(narrowphase, "[narrowphase]");
+    pipeline.walls = reader.choice("walls", pipeline.walls, {"auto", "half_space", "box", "mesh"});
+    pipeline.cull = reader.choice("cull", pipeline.cull, {"none", "auto", "sphere", "aabb", "obb", "kdop18", "kdop26"});
     pipeline.responses = read_responses(config, defaults.response);
     pipeline.step = read_step(config);
     pipeline.ledger = read_ledger(config);
