@@ -12,19 +12,20 @@ struct IdPair {
 };
 
 // False if one of the meshes is empty or the boxes around them are certainly apart.
-inline bool roots_near(const MeshPair& pair, const BoxFilter& filter) {
+template <class Filter>
+bool roots_near(const MeshPair& pair, const Filter& filter) {
     if (pair.a.hierarchy.nodes.empty() || pair.b.hierarchy.nodes.empty()) return false;
     const HierarchyNode *a = pair.a.hierarchy.nodes.data(), *b = pair.b.hierarchy.nodes.data();
     return filter.nodes_near({a, a}, {b, b}) != 0;
 }
 
 // Calls visit(triangle of A, triangle of B) for every pair whose boxes are not certainly apart, each pair once, and
-// stops where it returns false.
-template <class Visit>
+// stops where it returns false. Filter: BoxFilter, or what compares the nodes' other volumes.
+template <class Filter, class Visit>
 class HierarchyWalk {
 public:
     // The roots are near each other.
-    HierarchyWalk(const MeshPair& pair, const BoxFilter& filter, Visit visit)
+    HierarchyWalk(const MeshPair& pair, const Filter& filter, Visit visit)
         : a_(pair.a.hierarchy), b_(pair.b.hierarchy), filter_(filter), visit_(visit) {}
 
     void run() {
@@ -68,7 +69,7 @@ private:
     }
 
     const Hierarchy &a_, &b_;
-    const BoxFilter& filter_;
+    const Filter& filter_;
     Visit visit_;
     std::size_t size_ = 0;
     std::array<IdPair, 192> stack_;  // trees of 2^32 triangles are 30 deep: 60 x 3 + 1

@@ -5,6 +5,7 @@
 #include "mesh_contacts.h"
 #include "primitive_contacts.h"
 #include "sweep/workspace.h"
+#include "volume_hierarchies.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -47,8 +48,6 @@ void merge(Regions& regions) {
 }
 
 }  // namespace
-
-struct MeshNarrowphase::VolumeHierarchies {};
 
 // What one chunk of pairs works with; its rows are joined in chunk order.
 struct MeshNarrowphase::Workspace {
@@ -273,6 +272,8 @@ void MeshNarrowphase::prepare(const World& world) {
             edges = std::max(edges, shape.mesh->edges.size());
             triangles = std::max(triangles, shape.mesh->triangles.size());
         }
+    volumes_.reset();
+    if (hierarchy != "aabb") volumes_ = std::make_unique<VolumeHierarchies>(volume_kind(hierarchy), world);
     for (const auto& work : workspaces_) {
         work->contour.reserve(vertices, edges, triangles);
         work->triangles.hits.reserve(512);

@@ -1,4 +1,5 @@
 #include "hierarchy_walk.h"
+#include "volume_hierarchies.h"
 
 #include <optional>
 
@@ -38,10 +39,8 @@ private:
     std::size_t limit_;
 };
 
-}  // namespace
-
-void TriangleNarrowphase::intersect_meshes(const MeshPair& pair, TriangleHits& hits) const {
-    const BoxFilter filter(pair);
+template <class Filter>
+void walk(const TriangleNarrowphase& stage, const MeshPair& pair, const Filter& filter, TriangleHits& hits) {
     if (!roots_near(pair, filter)) return;  // many pairs of bodies end here: nothing else is set up before
     std::array<std::uint8_t, 64> hit;
     std::optional<std::array<TriangleSegment, 64>> segments;
@@ -50,8 +49,8 @@ void TriangleNarrowphase::intersect_meshes(const MeshPair& pair, TriangleHits& h
     auto test = [&](auto ids, std::span<const TrianglePair> pairs) {
         const std::size_t count = pairs.size();
         using Segments = std::span<TriangleSegment>;
-        intersect_triangles(pairs, std::span(hit).first(count),
-                            segments ? Segments(*segments).first(count) : Segments());
+        stage.intersect_triangles(pairs, std::span(hit).first(count),
+                                  segments ? Segments(*segments).first(count) : Segments());
         hits.tests += count;
         for (std::size_t i = 0; i < count; ++i)
             if (hit[i]) {
@@ -64,6 +63,20 @@ void TriangleNarrowphase::intersect_meshes(const MeshPair& pair, TriangleHits& h
     bool go_on = true;
     HierarchyWalk(pair, filter, [&](std::uint32_t a, std::uint32_t b) { return go_on = batch.add(a, b); }).run();
     if (go_on) batch.flush();
+}
+
+}  // namespace
+
+void TriangleNarrowphase::intersect_meshes(const MeshPair& pair, TriangleHits& hits) const {
+    const BoxFilter boxes(pair);
+    if (!volumes_) return walk(*this, pair, boxes, hits);
+    const NodeVolumes &a = volumes_->shapes[pair.shape_a], &b = volumes_->shapes[pair.shape_b];
+    const auto walk_by = [&](const auto& nodes) { walk(*this, pair, NodeFilter(pair, boxes, nodes), hits); };
+    switch (volumes_->kind) {
+    case VolumeKind::sphere: return walk_by(SphereNodes(pair, a, b));
+    case VolumeKind::obb: return walk_by(BoxNodes(pair, a, b));
+    default: return walk_by(SlabNodes(pair, a, b, volumes_->kind == VolumeKind::kdop18 ? 9 : 13));
+    }
 }
 
 }  // namespace kolize

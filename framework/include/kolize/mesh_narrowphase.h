@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace kolize {
@@ -51,6 +52,8 @@ struct MeshPair {
     bool want_segments = false;
 };
 
+class TriangleNarrowphase;
+
 // Handles spheres, boxes and half-spaces analytically where both shapes are primitive, a sphere or half-space against a
 // mesh by closest features, and meshes (a box is twelve triangles) by intersect_meshes and the contact model.
 class KOLIZE_API MeshNarrowphase : public Narrowphase {
@@ -72,7 +75,7 @@ public:
     // contour  intersection segments joined into regions; a region's normal is the direction of its vector area
     // averaged the thesis's: mean of the intersection points, normal of the triangle or body that is hit
     std::string contact = "contour";
-    // Volumes of the mesh hierarchies: aabb, sphere, obb, kdop18, kdop26
+    // Volumes at the nodes of the meshes' trees, where the framework walks them: aabb, sphere, obb, kdop18, kdop26
     std::string hierarchy = "aabb";
 
     template <class T, class Parameters>
@@ -80,10 +83,15 @@ public:
         p.add("contact", &T::contact)
             .choices({"contour", "averaged"})
             .doc("Contact model: how intersecting triangles become contacts.");
+        if constexpr (std::is_base_of_v<TriangleNarrowphase, T>)
+            p.add("hierarchy", &T::hierarchy)
+                .choices({"aabb", "sphere", "obb", "kdop18", "kdop26"})
+                .doc("Volumes of the trees over the meshes' triangles. What is found does not depend on it.");
     }
 
 private:
     friend class PairCollider;  // does one pair of bodies
+    friend class TriangleNarrowphase;
     struct Workspace;
     std::vector<std::unique_ptr<Workspace>> workspaces_;  // one per chunk of pairs
     struct SweepWorkspace;

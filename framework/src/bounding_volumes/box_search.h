@@ -1,7 +1,7 @@
 // The search for the axes of a box of small volume.
 #pragma once
 
-#include <kolize/math.h>
+#include <kolize/bounding_volumes.h>
 
 #include <span>
 #include <vector>
@@ -31,5 +31,8 @@ std::vector<Vec3> outermost(std::span<const Vec3> points);
 // Smallest of the boxes that the search comes to from many directions, and from the given boxes. It looks at all points
 // a few thousand times.
 BoxAxes search_box(std::span<const Mat3> starts, std::span<const Vec3> points);
+
+// The box along the principal components: found at once, up to a few times as large as the smallest.
+OrientedBox principal_box(std::span<const Vec3> points);
 
 }  // namespace kolize

@@ -51,6 +51,11 @@ OrientedBox box_with_axes(const Mat3& axes, const LocalPoints& local, std::span<
 
 }  // namespace
 
+OrientedBox principal_box(std::span<const Vec3> points) {
+    const LocalPoints local = local_points(points);
+    return box_with_axes(principal_axes(local.points), local, points);
+}
+
 OrientedBox oriented_box(std::span<const Vec3> points) {
     const LocalPoints local = local_points(points);
     const std::array<Mat3, 2> starts{Mat3::Identity(), principal_axes(local.points)};
