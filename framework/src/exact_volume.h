@@ -33,6 +33,10 @@ inline double volume(const Span& u, const Span& v, const Span& w, double margin 
     return exact_volume(u, v, w);
 }
 
+// Where the segment pq, whose ends do not lie on one side of the plane through t, crosses it: each coordinate within a
+// few roundings of the exact one. Not both ends lie in the plane.
+Vec3 exact_crossing(const Vec3& p, const Vec3& q, const Vec3 (&t)[3]);
+
 inline int sign(double x) { return (x > 0) - (x < 0); }
 
 }  // namespace kolize

@@ -83,10 +83,24 @@ bool a_side_meets_the_other(const Corners& a, const Corners& b) {
 // On which side of a plane each corner of a triangle lies.
 struct Heights {
     int of[3];
+
+    // The bound is that of volume(), once for all corners, for the determinant in another order: each of the six
+    // products is wrong by eight roundings at most and no larger than the product of the largest coordinates.
     Heights(const Corners& t, const Corners& plane) {
-        for (int k = 0; k < 3; ++k) of[k] = orient3d(plane[0], plane[1], plane[2], t[k]);
+        constexpr double rounding = 49 * 0x1p-53, may_underflow = 1e-97, may_overflow = 1e102;
+        const Vec3 u = plane[1] - plane[0], v = plane[2] - plane[0];
+        const Vec3 seen[3] = {t[0] - plane[0], t[1] - plane[0], t[2] - plane[0]};
+        Vec3 largest = u.cwiseAbs().cwiseMax(v.cwiseAbs());
+        for (const Vec3& p : seen) largest = largest.cwiseMax(p.cwiseAbs());
+        const bool usual = largest.minCoeff() > may_underflow && largest.maxCoeff() < may_overflow;
+        const double bound = usual ? rounding * largest.prod() : infinity;
+        const Vec3 normal = u.cross(v);
+        for (int k = 0; k < 3; ++k) {
+            const double height = normal.dot(seen[k]);
+            of[k] = std::abs(height) > bound ? sign(height) : orient3d(plane[0], plane[1], plane[2], t[k]);
+        }
     }
-    bool all_on_one_side() const { return of[0] != 0 && of[0] == of[1] && of[1] == of[2]; }
+    bool all_on_one_side() const { return std::abs(of[0] + of[1] + of[2]) == 3; }
     bool all_zero() const { return of[0] == 0 && of[1] == 0 && of[2] == 0; }
 
     // The corner that is alone on its side of the plane, where corners in the plane count as on either side.
@@ -114,6 +128,55 @@ struct Ordered {
     void turn_over() { std::swap(second, third); }
 };
 
+// Two triangles in planes that cross: the corners in the order in which the planes' common line asks for them.
+struct Crossing {
+    Ordered a, b;
+    Crossing(const Corners& ta, const Corners& tb, const Heights& of_a, const Heights& of_b)
+        : a(ta, of_a), b(tb, of_b) {
+        if (a.below) b.turn_over();
+        if (b.below) a.turn_over();
+    }
+    // The line passes the triangles in two intervals: does each begin before the other ends?
+    bool intervals_overlap() const {
+        return orient3d(*a.lone, *a.second, *b.lone, *b.second) <= 0 &&
+               orient3d(*a.lone, *a.third, *b.third, *b.lone) <= 0;
+    }
+    // Where the second of the two begins, and where the first ends.
+    CommonSegment ends(const Corners& ta, const Corners& tb) const {
+        const bool a_begins = orient3d(*a.lone, *a.third, *b.second, *b.lone) > 0;
+        const bool a_ends = orient3d(*a.lone, *a.second, *b.third, *b.lone) <= 0;
+        return {a_begins ? exact_crossing(*a.lone, *a.third, tb) : exact_crossing(*b.lone, *b.second, ta),
+                a_ends ? exact_crossing(*a.lone, *a.second, tb) : exact_crossing(*b.lone, *b.third, ta)};
+    }
+};
+
+bool contains(const Corners& t, const Vec3& p) { return segment_meets_triangle(p, p, t); }
+
+// Of two triangles in one plane, or of which one has no area. Where no corner of one lies in the other, two sides cross
+// between their ends, or a side passes through a triangle that it is not in one plane with.
+Vec3 common_point(const Corners& a, const Corners& b) {
+    for (int k = 0; k < 3; ++k) {
+        if (contains(b, a[k])) return a[k];
+        if (contains(a, b[k])) return b[k];
+    }
+    for (int i = 0; i < 3; ++i)
+        for (const bool of_a : {true, false}) {
+            const Corners &sides = of_a ? a : b, &t = of_a ? b : a;
+            const Vec3 &p = sides[i], &q = sides[(i + 1) % 3];
+            if (!segment_meets_triangle(p, q, t)) continue;
+            if (orient3d(t[0], t[1], t[2], p) != 0) return exact_crossing(p, q, t);
+            for (int k = 0; k < 3; ++k) {
+                const Vec3 &r = t[k], &s = t[(k + 1) % 3];
+                if (!segments_intersect(p, q, r, s)) continue;
+                Vec3 beside = s;  // r, s and this one lie in a plane that p and q cross
+                double& x = beside[std::min(viewing_axis(p, q, r), viewing_axis(p, q, s))];
+                x = x == 0 ? 1 : 0;
+                return exact_crossing(p, q, {r, s, beside});
+            }
+        }
+    return a[0];
+}
+
 }  // namespace
 
 bool triangles_intersect(const Vec3 (&a)[3], const Vec3 (&b)[3]) {
@@ -122,11 +185,14 @@ bool triangles_intersect(const Vec3 (&a)[3], const Vec3 (&b)[3]) {
     const Heights of_b(b, a);
     if (of_b.all_on_one_side()) return false;
     if (of_a.all_zero() || of_b.all_zero()) return a_side_meets_the_other(a, b);
-    Ordered p(a, of_a), q(b, of_b);
-    if (p.below) q.turn_over();
-    if (q.below) p.turn_over();
-    // Both planes' common line passes the triangles in two intervals: does each begin before the other ends?
-    return orient3d(*p.lone, *p.second, *q.lone, *q.second) <= 0 && orient3d(*p.lone, *p.third, *q.third, *q.lone) <= 0;
+    return Crossing(a, b, of_a, of_b).intervals_overlap();
+}
+
+CommonSegment common_segment(const Vec3 (&a)[3], const Vec3 (&b)[3]) {
+    const Heights of_a(a, b), of_b(b, a);
+    if (!of_a.all_zero() && !of_b.all_zero()) return Crossing(a, b, of_a, of_b).ends(a, b);
+    const Vec3 point = common_point(a, b);
+    return {point, point};
 }
 
 }  // namespace kolize

@@ -18,4 +18,12 @@ KOLIZE_API int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3&
 // Devillers & Guigue, "Faster triangle-triangle intersection tests", INRIA RR-4488, 2002, over exact predicates.
 KOLIZE_API bool triangles_intersect(const Vec3 (&a)[3], const Vec3 (&b)[3]);
 
+// What two triangles that intersect have in common: the ends of a segment, each coordinate within a few roundings of
+// the exact one. Of triangles in one plane, and where one has no area, a single point as both ends.
+struct CommonSegment {
+    Vec3 begin;
+    Vec3 end;
+};
+KOLIZE_API CommonSegment common_segment(const Vec3 (&a)[3], const Vec3 (&b)[3]);
+
 }  // namespace kolize
