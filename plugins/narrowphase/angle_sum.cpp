@@ -1,14 +1,8 @@
 // Triangle-triangle test by angle sums, as the source thesis did it.
 //
 // Every edge of one triangle is cut with the plane of the other. The cut lies inside that triangle if the three angles
-// under which it sees the sides add up to a full turn, within epsilon. Then the triangles change roles.
-//
-// Source:   the angle-summation point-in-polygon test (Haines, "Point in polygon strategies", Graphics Gems IV, 1994).
-// Cost:     up to six cuts with three square roots and three arc cosines each.
-// Accuracy: the arc cosine loses half the digits near a full turn, so epsilon fattens the triangle by an amount that
-//           depends on its shape; coplanar triangles are never found. Float, as in the thesis, errs more
-//           often than double (tests/narrowphase/triangle_test_test.cpp).
-// Choose it to see what the thesis' pipeline gives, as a baseline; not for new work.
+// under which it sees the sides add up to a full turn, within epsilon. Then the triangles change roles. All points are
+// relative to the first corner of the pair: the difference is taken before it is narrowed to float.
 #include <kolize/mesh_narrowphase.h>
 #include <kolize/plugin.h>
 
@@ -52,7 +46,7 @@ template <class Real>
 void cut_edges(const Point<Real> (&edges)[3], const Point<Real> (&face)[3], Real epsilon, Cuts<Real>& cuts) {
     const Point<Real> normal = (face[1] - face[0]).cross(face[2] - face[0]);
     for (int k = 0; k < 3; ++k) {
-        const Point<Real> &p = edges[k], &q = edges[(k + 1) % 3];
+        const Point<Real>&p = edges[k], &q = edges[(k + 1) % 3];
         const Real hp = normal.dot(p - face[0]), hq = normal.dot(q - face[0]);
         if ((hp > 0 && hq > 0) || (hp < 0 && hq < 0) || hp == hq) continue;
         const Point<Real> cut = p + (q - p) * (hp / (hp - hq));
@@ -62,16 +56,18 @@ void cut_edges(const Point<Real> (&edges)[3], const Point<Real> (&face)[3], Real
 
 template <class Real>
 bool intersect(const TrianglePair& pair, double epsilon, TriangleSegment* segment) {
+    const Vec3& origin = pair.a[0];
     Point<Real> a[3], b[3];
     for (int k = 0; k < 3; ++k) {
-        a[k] = pair.a[k].template cast<Real>();
-        b[k] = pair.b[k].template cast<Real>();
+        a[k] = (pair.a[k] - origin).template cast<Real>();
+        b[k] = (pair.b[k] - origin).template cast<Real>();
     }
     Cuts<Real> cuts;
     cut_edges(a, b, Real(epsilon), cuts);
     if (cuts.count == 0 || segment) cut_edges(b, a, Real(epsilon), cuts);
     if (segment && cuts.count)
-        *segment = {cuts.points[0].template cast<double>(), cuts.points[cuts.count - 1].template cast<double>()};
+        *segment = {origin + cuts.points[0].template cast<double>(),
+                    origin + cuts.points[cuts.count - 1].template cast<double>()};
     return cuts.count > 0;
 }
 
@@ -110,4 +106,10 @@ private:
 
 KOLIZE_PLUGIN(AngleSum, .name = "angle_sum", .summary = "triangle-triangle test by angle sums, the source thesis' own",
               .source = "Haines, Point in polygon strategies, Graphics Gems IV, 1994",
+              .cost = "Up to six cuts with three square roots and three arc cosines each.",
+              .accuracy =
+                  "The arc cosine loses half the digits near a full turn, so epsilon fattens the triangle by an "
+                  "amount that depends on its shape; coplanar triangles are never found. Float, as in the "
+                  "thesis, errs more often than double (docs/accuracy.md).",
+              .choose = "To see what the thesis' pipeline gives, as a baseline; not for new work.",
               .capabilities = {.time_of_impact = true, .crossings = true})
