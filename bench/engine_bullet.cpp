@@ -110,6 +110,8 @@ std::unique_ptr<btCollisionShape> BulletEngine::make_shape(const Shape& shape, b
     case ShapeKind::sphere: return std::make_unique<btSphereShape>(btScalar(shape.radius));
     case ShapeKind::box: return std::make_unique<btBoxShape>(to_bullet(shape.half_extents));
     case ShapeKind::half_space: return std::make_unique<btStaticPlaneShape>(to_bullet(shape.normal), btScalar(0));
+    case ShapeKind::capsule:
+    case ShapeKind::hull:
     case ShapeKind::mesh: break;
     }
     triangles_.push_back(std::make_unique<Triangles>(*shape.mesh));

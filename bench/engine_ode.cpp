@@ -120,6 +120,8 @@ dGeomID OdeEngine::make_geom(const World& world, std::uint32_t body) {
     case ShapeKind::sphere: return dCreateSphere(space_, shape.radius);
     case ShapeKind::box: return dCreateBox(space_, sides.x(), sides.y(), sides.z());
     case ShapeKind::mesh: return dCreateTriMesh(space_, mesh_data(shape), nullptr, nullptr, nullptr);
+    case ShapeKind::capsule:
+    case ShapeKind::hull:
     case ShapeKind::half_space: break;
     }
     const Vec3 normal = world.orientation[body] * shape.normal;

@@ -24,7 +24,8 @@ constexpr StageKind stage_kinds[] = {StageKind::broadphase, StageKind::narrowpha
 
 std::vector<std::string> shape_kind_names(std::uint32_t bits) {
     std::vector<std::string> names;
-    for (const ShapeKind kind : {ShapeKind::sphere, ShapeKind::box, ShapeKind::half_space, ShapeKind::mesh})
+    for (const ShapeKind kind : {ShapeKind::sphere, ShapeKind::box, ShapeKind::half_space, ShapeKind::mesh,
+                                 ShapeKind::capsule, ShapeKind::hull})
         if (bits & bit(kind)) names.emplace_back(to_string(kind));
     return names;
 }
@@ -63,6 +64,9 @@ Json plugin_json(const LoadedPlugin& plugin) {
             {"name", plugin.descriptor->name},
             {"summary", plugin.descriptor->summary},
             {"source", plugin.descriptor->source},
+            {"cost", plugin.descriptor->cost},
+            {"accuracy", plugin.descriptor->accuracy},
+            {"choose", plugin.descriptor->choose},
             {"file", plugin.file.string()},
             {"capabilities", capabilities_json(*plugin.descriptor)},
             {"parameters", parameters}};
@@ -116,6 +120,8 @@ void print_plugin(const LoadedPlugin& plugin) {
     const PluginDescriptor& d = *plugin.descriptor;
     std::cout << to_string(d.stage) << ' ' << d.name << ": " << d.summary << "\n  source        " << d.source
               << "\n  file          " << plugin.file.string() << '\n';
+    for (const auto& [title, text] : {std::pair{"cost", d.cost}, {"accuracy", d.accuracy}, {"choose", d.choose}})
+        if (*text) std::cout << "  " << title << std::string(14 - std::string(title).size(), ' ') << text << '\n';
     const Json capabilities = capabilities_json(d);
     for (const auto& [key, value] : capabilities.items())
         std::cout << "  " << key << std::string(14 - std::min<std::size_t>(13, key.size()), ' ')

@@ -44,7 +44,11 @@ void write_shape(Writer& out, const Shape& shape) {
     out.exact("moments", shape.moments);
     if (shape.kind == ShapeKind::sphere) out.exact("radius", shape.radius);
     if (shape.kind == ShapeKind::box) out.exact("half_extents", shape.half_extents);
-    if (shape.kind == ShapeKind::mesh) write_mesh(out, *shape.mesh);
+    if (shape.kind == ShapeKind::mesh || shape.kind == ShapeKind::hull) write_mesh(out, *shape.mesh);
+    if (shape.kind == ShapeKind::capsule) {
+        out.exact("radius", shape.cap_radius);
+        out.exact("half_height", shape.half_height);
+    }
 }
 
 void write_body(Writer& out, const World& world, std::uint32_t body) {

@@ -120,6 +120,8 @@ private:
                 return box_half_space(first.half_extents, rotation(a), normal, offset, regions);
             return;
         }
+        case ShapeKind::capsule: return;  // not taken: no pipeline has one
+        case ShapeKind::hull:
         case ShapeKind::mesh:
             if (first.kind == ShapeKind::sphere) return collide_sphere_mesh(a, b);
             if (first.kind == ShapeKind::half_space) return collide_half_space_mesh(a, b);

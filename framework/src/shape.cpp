@@ -1,5 +1,6 @@
 #include <kolize/shape.h>
 
+#include <kolize/convex_hull.h>
 #include <kolize/mass_properties.h>
 
 #include <numbers>
@@ -90,6 +91,34 @@ Shape make_mesh(std::string name, const TriangleSoup& closed_surface) {
     shape.moments = frame.moments;
     shape.center_in_model = mass.center_of_mass;
     shape.body_to_model = frame.axes;
+    return shape;
+}
+
+Shape make_capsule(std::string name, double radius, double half_height) {
+    require(positive(radius), "the radius of a capsule must be positive and finite, is " + std::to_string(radius));
+    require(half_height >= 0 && half_height < infinity,
+            "the half height of a capsule must be finite and not below 0, is " + std::to_string(half_height));
+    Shape shape;
+    shape.name = std::move(name);
+    shape.kind = ShapeKind::capsule;
+    shape.radius = radius + half_height;
+    shape.cap_radius = radius;
+    shape.half_height = half_height;
+    const Vec3 reach(radius, radius + half_height, radius);
+    shape.bounds = {-reach, reach};
+    // A cylinder and a ball, whose halves stand at its ends: their centres of mass are 3/8 r farther out.
+    const double r2 = radius * radius, h = half_height;
+    const double cylinder = 2 * std::numbers::pi * r2 * h, ball = 4.0 / 3.0 * std::numbers::pi * r2 * radius;
+    shape.volume = cylinder + ball;
+    const double along = cylinder * r2 / 2 + ball * 0.4 * r2;
+    const double across = cylinder * (r2 / 4 + h * h / 3) + ball * (0.4 * r2 + h * h + 0.75 * h * radius);
+    shape.moments = Vec3(across, along, across) / shape.volume;
+    return shape;
+}
+
+Shape make_hull(std::string name, std::span<const Vec3> points) {
+    Shape shape = make_mesh(std::move(name), convex_hull(points));
+    shape.kind = ShapeKind::hull;
     return shape;
 }
 

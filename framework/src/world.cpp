@@ -132,7 +132,13 @@ Aabb world_bounds(const World& world, std::uint32_t body) {
         return {position - half, position + half};
     }
     case ShapeKind::half_space: return {Vec3::Constant(-infinity), Vec3::Constant(infinity)};
+    case ShapeKind::capsule: {
+        const Vec3 axis = world.orientation[body] * (shape.half_height * Vec3::UnitY());
+        const Vec3 half = axis.cwiseAbs() + Vec3::Constant(shape.cap_radius);
+        return {position - half, position + half};
+    }
     case ShapeKind::box:
+    case ShapeKind::hull:
     case ShapeKind::mesh: break;
     }
     // A turned box reaches |R| h along the world axes: Arvo, "Transforming axis-aligned bounding boxes", Graphics Gems.

@@ -94,4 +94,6 @@ KOLIZE_PLUGIN(BoundingVolume, .name = "bounding_volume",
               .choose =
                   "Choose it where a bounce off the bounds is all that is wanted, as with balls; take moller where "
                   "shapes matter.",
-              .capabilities = {.gives = Detail::normal, .bounding_spheres = true})
+              .capabilities = {.shape_kinds = all_shape_kinds | bit(ShapeKind::capsule),
+                               .gives = Detail::normal,
+                               .bounding_spheres = true})

@@ -2,8 +2,12 @@
 
 #include "shaders.h"
 
+#include <kolize/convex_hull.h>
+
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <numbers>
 
 namespace kolize::gl {
 namespace {
@@ -88,6 +92,26 @@ void Bodies::add_balls(const SkinTexture* skin) {
     for (int level = 0; level < ball_levels; ++level) add_batch(unit_ball(level + 1), skin);
 }
 
+namespace {
+
+// Of circles of latitude, the equator twice.
+std::shared_ptr<const Mesh> capsule_mesh(const Shape& capsule) {
+    constexpr int meridians = 32, circles = 8;
+    std::vector<Vec3> points;
+    for (const double end : {-1.0, 1.0})
+        for (int i = 0; i <= circles; ++i)
+            for (int k = 0; k < (i == circles ? 1 : meridians); ++k) {
+                const double latitude = 0.5 * std::numbers::pi * i / circles,
+                             longitude = 2 * std::numbers::pi * k / meridians;
+                const Vec3 outward(std::cos(latitude) * std::cos(longitude), end * std::sin(latitude),
+                                   std::cos(latitude) * std::sin(longitude));
+                points.push_back(capsule.cap_radius * outward + Vec3(0, end * capsule.half_height, 0));
+            }
+    return build_mesh(convex_hull(points), true);
+}
+
+}  // namespace
+
 void Bodies::add_shapes(const World& world, double crease) {
     batches_.clear();
     add_balls(nullptr);
@@ -96,9 +120,10 @@ void Bodies::add_shapes(const World& world, double crease) {
         const Shape& shape = world.shapes[i];
         const SkinTexture* skin = skin_of_shape_[i].get();
         const bool is_skinned_ball = shape.kind == ShapeKind::sphere && skin;
-        if (!shape.mesh && !is_skinned_ball) continue;
+        const auto mesh = shape.kind == ShapeKind::capsule ? capsule_mesh(shape) : shape.mesh;
+        if (!mesh && !is_skinned_ball) continue;
         batch_of_shape_[i] = batches_.size();
-        is_skinned_ball ? add_balls(skin) : add_batch(surface_of(*shape.mesh, crease), skin);
+        is_skinned_ball ? add_balls(skin) : add_batch(surface_of(*mesh, crease), skin);
     }
 }
 

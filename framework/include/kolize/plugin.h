@@ -52,7 +52,9 @@ struct Capabilities {
     bool rests = false;             // response: models resting contact
     bool sleeps = false;            // response: lays bodies to sleep, and wakes them
     bool friction = false;          // response: models friction; where none does, the friction of a scene has no effect
-    bool bounding_spheres = false;  // response: treats the dynamic bodies that only it serves as their bounding spheres
+    // Response: treats the dynamic bodies that only it serves as their bounding spheres. Narrowphase: answers for bounding
+    // volumes in place of all bodies.
+    bool bounding_spheres = false;
     const char* outline = nullptr;  // broadphase: what outline() gives: "cells", "planes", "spheres"
     bool crossings = false;         // narrowphase: find_crossings() gives where surfaces cross
 };

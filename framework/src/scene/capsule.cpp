@@ -58,10 +58,14 @@ Shape read_half_space(TableReader& reader, ExactNumbers& exact, const std::strin
 Shape read_geometry(TableReader& reader, ExactNumbers& exact) {
     const std::string name = reader.text("name", "");
     reader.require("kind");
-    const std::string kind = reader.choice("kind", "", {"sphere", "box", "half_space", "mesh"});
+    const std::string kind = reader.choice("kind", "", {"sphere", "box", "half_space", "capsule", "hull", "mesh"});
     if (kind == "sphere") return make_sphere(name, exact.number("radius", positive));
     if (kind == "box") return make_box(name, exact.vector("half_extents", positive));
-    return kind == "mesh" ? read_mesh(reader, exact, name) : read_half_space(reader, exact, name);
+    if (kind == "capsule") return make_capsule(name, exact.number("radius", positive), exact.number("half_height"));
+    if (kind == "half_space") return read_half_space(reader, exact, name);
+    Shape shape = read_mesh(reader, exact, name);
+    if (kind == "hull") shape.kind = ShapeKind::hull;
+    return shape;
 }
 
 Shape read_shape(const toml::table& table) {

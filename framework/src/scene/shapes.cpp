@@ -8,7 +8,7 @@
 namespace kolize::config {
 namespace {
 
-const std::vector<std::string> shape_kinds = {"sphere", "box", "half_space", "mesh"};
+const std::vector<std::string> shape_kinds = {"sphere", "box", "half_space", "capsule", "hull", "mesh"};
 
 // The name, which also goes into the reader's title: shape 'ball'.
 std::string read_name(TableReader& reader, const std::string& what) {
@@ -84,15 +84,34 @@ private:
     std::map<std::tuple<std::filesystem::path, double, bool>, Shape> shapes_;
 };
 
-Shape read_shape(TableReader& reader, const std::string& name, MeshCache& meshes) {
+Shape read_capsule_shape(TableReader& reader, const std::string& name) {
+    reader.require("radius");
+    reader.require("half_height");
+    return make_capsule(name, reader.number("radius", 0, positive), reader.number("half_height", 0, non_negative));
+}
+
+// Of the file's vertices, whatever its triangles are.
+Shape read_hull(TableReader& reader, const std::string& name, std::vector<std::string>& warnings) {
+    TriangleSoup soup = read_mesh(reader.path("file"));
+    const double scale = reader.number("scale", 1, positive);
+    warnings.insert(warnings.end(), soup.notes.begin(), soup.notes.end());
+    for (Vec3& vertex : soup.vertices) vertex *= scale;
+    try {
+        return make_hull(name, soup.vertices);
+    } catch (const std::invalid_argument& error) {
+        throw Error(reader.where("file"), std::string("no hull can be made of this file: ") + error.what());
+    }
+}
+
+Shape read_shape(TableReader& reader, const std::string& name, MeshCache& meshes, std::vector<std::string>& warnings) {
     reader.require("kind");
     const std::string kind = reader.text("kind", "");
-    if (kind == "capsule" || kind == "hull")
-        throw Error(reader.where("kind"), "shape kind '" + kind + "' is not there yet; there are " + join(shape_kinds));
     reader.choice("kind", "", shape_kinds);
     if (kind == "sphere") return read_sphere(reader, name);
     if (kind == "box") return read_box(reader, name);
     if (kind == "half_space") return read_half_space(reader, name);
+    if (kind == "capsule") return read_capsule_shape(reader, name);
+    if (kind == "hull") return read_hull(reader, name, warnings);
     return meshes.read(reader, name);
 }
 
@@ -141,7 +160,7 @@ NameTable read_shapes(const toml::table& config, World& world, std::vector<std::
         TableReader reader(*table, "[[shape]]");
         const std::string name = read_name(reader, "shape");
         names.add(name, static_cast<std::uint32_t>(world.shapes.size()), reader.where("name"));
-        world.shapes.push_back(read_shape(reader, name, meshes));
+        world.shapes.push_back(read_shape(reader, name, meshes, warnings));
         reader.finish();
     }
     return names;

@@ -46,7 +46,9 @@ SweptBody swept_body(const World& world, std::uint32_t body) {
         swept.radius = shape.radius;
         break;
     case ShapeKind::half_space: swept.plane_normal = shape.normal; break;
+    case ShapeKind::capsule: break;  // not taken: no pipeline has one
     case ShapeKind::box:
+    case ShapeKind::hull:
     case ShapeKind::mesh:
         swept.mesh = shape.mesh.get();
         swept.reach = shape.radius;
