@@ -88,9 +88,9 @@ KOLIZE_PLUGIN(BoundingVolume, .name = "bounding_volume",
                   "every pair. Fitting small boxes around large meshes takes seconds before the first step.",
               .accuracy =
                   "Of volumes, not of surfaces: bodies collide before they touch, as far as their volumes stand "
-                  "out. Spheres, and boxes as obb, are their own volumes and exact. A k-DOP may collide "
-                  "with a sphere or a turned box that it only nearly touches. With aabb and k-DOPs the answer "
-                  "depends on how bodies are turned to the world's axes.",
+                  "out. Exact are balls as spheres, and boxes as obb; a ball as obb is a cube that turns with "
+                  "it. A k-DOP may collide with a sphere or a turned box that it only nearly touches. With aabb "
+                  "and k-DOPs the answer depends on how bodies are turned to the world's axes.",
               .choose =
                   "Choose it where a bounce off the bounds is all that is wanted, as with balls; take moller where "
                   "shapes matter.",
