@@ -54,6 +54,21 @@ std::string row_of_balls(int side, double spacing, double height) {
     return text;
 }
 
+// A square of columns of unit cubes with gaps between them, each cube a little beside the one below.
+std::string columns(int side, int height, double spacing, double gap, double jitter, std::uint64_t seed) {
+    Random random(seed);
+    std::string text = state_header;
+    for (int i = 0; i < side; ++i)
+        for (int j = 0; j < side; ++j)
+            for (int k = 0; k < height; ++k) {
+                const Vec3 place(spacing * (i - 0.5 * (side - 1)), 0.5 + gap + k * (1 + gap),
+                                 spacing * (j - 0.5 * (side - 1)));
+                const Vec3 aside(random.uniform() - 0.5, 0, random.uniform() - 0.5);
+                text += state_row({place + 2 * jitter * aside, Quat::Identity(), Vec3::Zero(), Vec3::Zero()});
+            }
+    return text;
+}
+
 // In the room of fighters.toml, with the model at a hundredth of its size.
 std::string fighters() {
     StateWriter states(2.85, 0.1, 5, 1, 4);
@@ -72,6 +87,7 @@ int main(int argc, char** argv) {
         write_text(folder / "spheres.csv", gas(8.7, 0.5, false, 1));
         write_text(folder / "cubes.csv", gas(10.8, 0.5 * std::sqrt(3.0), true, 2));
         write_text(folder / "fighters.csv", fighters());
+        write_text(folder / "pile.csv", columns(10, 10, 1.1, 0.08, 0.02, 3));
         write_text(folder / "balls.csv", row_of_balls(7, 1, 5));
     } catch (const std::exception& error) {
         std::cerr << error.what() << '\n';
