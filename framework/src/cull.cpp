@@ -19,12 +19,21 @@ Cull::Cull(const std::string& kind, const World& world) {
     for (const Shape& shape : world.shapes)
         shapes_.push_back(fit_volume(shape, kind == "auto" ? suitable(shape.kind) : volume_kind(kind)));
     bodies_.resize(world.size());
+    is_wanted_.resize(world.size());
+    wanted_.reserve(world.size());
 }
 
-void Cull::place(const World& world, Host& host) {
+void Cull::place(const World& world, std::span<const Pair> pairs, Host& host) {
     constexpr std::size_t grain = 256;
-    host.parallel_for(bodies_.size(), grain, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t body = begin; body < end; ++body)
+    for (const std::uint32_t body : wanted_) is_wanted_[body] = 0;
+    wanted_.clear();
+    for (const Pair& pair : pairs)
+        for (const std::uint32_t body : {pair.a, pair.b}) {
+            if (!is_wanted_[body]) wanted_.push_back(body);
+            is_wanted_[body] = 1;
+        }
+    host.parallel_for(wanted_.size(), grain, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (const std::uint32_t body : std::span(wanted_).subspan(begin, end - begin))
             bodies_[body] = place_volume(shapes_[world.shape[body]], world.position[body],
                                          world.orientation[body].toRotationMatrix());
     });

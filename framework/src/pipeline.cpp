@@ -229,7 +229,7 @@ bool Pipeline::route(const Pair& pair) {
 
 void Pipeline::cull_pairs() {
     const auto start = StageClock::Clock::now();
-    cull_->place(world, host_);
+    cull_->place(world, routed_, host_);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < routed_.size(); ++i) {
         if (cull_->certainly_apart(routed_[i])) continue;

@@ -37,17 +37,25 @@ SlabSum slab_sum(const Vec3& direction, int slabs) {
 }
 
 SlabReach slab_reach(std::span<const Vec3> points, double margin, const Mat3& rotation, int slabs) {
-    SlabReach reach;
-    reach.fill(-infinity);
+    std::array<double, 13> low, high;  // by slab_directions; all of them, because so the loop below is a few vectors
+    low.fill(infinity);
+    high.fill(-infinity);
     for (const Vec3& point : points) {
         const Vec3 p = rotation * point;
-        for (int i = 0; i < slabs; ++i) {
-            const double along = slab_direction(i).dot(p);
-            reach[2 * i] = std::max(reach[2 * i], along);
-            reach[2 * i + 1] = std::max(reach[2 * i + 1], -along);
+        const double x = p.x(), y = p.y(), z = p.z(), sum = x + y, difference = x - y;
+        const std::array<double, 13> along{x,     y,     z,       sum,     difference,     x + z,         x - z,
+                                           y + z, y - z, sum + z, sum - z, difference + z, difference - z};
+        for (int i = 0; i < 13; ++i) {
+            low[i] = std::min(low[i], along[i]);
+            high[i] = std::max(high[i], along[i]);
         }
     }
-    for (int i = 0; i < 2 * slabs; ++i) reach[i] += margin * slab_direction(i / 2).norm();
+    SlabReach reach{};
+    for (int i = 0; i < slabs; ++i) {
+        const double outward = margin * slab_direction(i).norm();
+        reach[2 * i] = high[i] + outward;
+        reach[2 * i + 1] = outward - low[i];
+    }
     return reach;
 }
 
