@@ -203,4 +203,4 @@ KOLIZE_PLUGIN(Embree, .name = "embree", .summary = "candidate triangles by Embre
                   "Exact for the corners as they come, as moller: boxes are rounded outward and only choose "
                   "which triangles are tested.",
               .choose = "Choose it to compare with, or to check another narrowphase against; moller does not refit.",
-              .capabilities = {.time_of_impact = true, .allocates = true, .crossings = true})
+              .capabilities = {.time_of_impact = true, .allocates = true, .exact = true, .crossings = true})
