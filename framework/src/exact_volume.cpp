@@ -74,6 +74,10 @@ double quotient(const Integer& dividend, const Integer& divisor) {
 }  // namespace
 
 double exact_volume(const Span& u, const Span& v, const Span& w) {
+    if (u.to == v.to || v.to == w.to || w.to == u.to) {
+        const bool from_one_corner = u.from == v.from && v.from == w.from;
+        if (from_one_corner) return 0;  // triangles that share a corner or a side: the most frequent doubt
+    }
     bool usual = true;
     for (const Span* s : {&u, &v, &w})
         usual = usual && within_limits(s->from, most_of_three) && within_limits(s->to, most_of_three);
