@@ -120,29 +120,34 @@ template <int lanes>
     narrow<lanes>(b0.r - a0.p, b1.r - a1.p, b.r);
 }
 
-// Of a triangle's corners over the plane of another one, times twice its area.
+// On which side of another triangle's plane each corner lies.
 template <class V>
-struct Heights {
-    V p, q, r;
-    [[gnu::always_inline]] Heights(const Corners<V>& t, const Corners<V>& plane) {
+struct Sides {
+    Mask<V> p_above, q_above, r_above;  // and not in the plane
+    Mask<V> p_not_below, q_not_below, r_not_below;
+    [[gnu::always_inline]] Sides(const Corners<V>& t, const Corners<V>& plane) {
         const Point<V> normal = cross(plane.q - plane.p, plane.r - plane.p);
-        p = dot(normal, t.p - plane.p);
-        q = dot(normal, t.q - plane.p);
-        r = dot(normal, t.r - plane.p);
+        const V p = dot(normal, t.p - plane.p), q = dot(normal, t.q - plane.p), r = dot(normal, t.r - plane.p);
+        p_above = p > 0, q_above = q > 0, r_above = r > 0;
+        p_not_below = p >= 0, q_not_below = q >= 0, r_not_below = r >= 0;
     }
+    [[gnu::always_inline]] Mask<V> none_above() const { return ~(p_above | q_above | r_above); }
     [[gnu::always_inline]] Mask<V> on_one_side() const {
-        return ((p > 0) & (q > 0) & (r > 0)) | ((p < 0) & (q < 0) & (r < 0));
+        return (p_above & q_above & r_above) | ~(p_not_below | q_not_below | r_not_below);
     }
-    [[gnu::always_inline]] Mask<V> all_zero() const { return (p == 0) & (q == 0) & (r == 0); }
+    [[gnu::always_inline]] Mask<V> all_in_plane() const {
+        return none_above() & p_not_below & q_not_below & r_not_below;
+    }
 };
 
 // Turns the triangle until the corner that is alone on its side comes first, where corners in the plane count as on
 // either side. Tells where that corner lies below.
 template <class V>
-[[gnu::always_inline]] inline Mask<V> put_lone_corner_first(Corners<V>& t, const Heights<V>& h) {
-    const Mask<V> zero_is_above = ~((h.p > 0) | (h.q > 0) | (h.r > 0));
-    const Mask<V> p = (h.p > 0) | ((h.p == 0) & zero_is_above), q = (h.q > 0) | ((h.q == 0) & zero_is_above),
-                  r = (h.r > 0) | ((h.r == 0) & zero_is_above);
+[[gnu::always_inline]] inline Mask<V> put_lone_corner_first(Corners<V>& t, const Sides<V>& sides) {
+    const Mask<V> zero_is_above = sides.none_above();
+    const Mask<V> p = sides.p_above | (sides.p_not_below & zero_is_above),
+                  q = sides.q_above | (sides.q_not_below & zero_is_above),
+                  r = sides.r_above | (sides.r_not_below & zero_is_above);
     const Mask<V> q_first = (q ^ p) & (q ^ r), r_first = (r ^ p) & (r ^ q);
     t = {select(q_first, t.q, select(r_first, t.r, t.p)), select(q_first, t.r, select(r_first, t.p, t.q)),
          select(q_first, t.p, select(r_first, t.q, t.r))};
@@ -241,12 +246,12 @@ template <class Real, int lanes>
     using V = Vector<Real, lanes>;
     Corners<V> a, b;
     load<lanes>(pairs, a, b);
-    const Heights<V> of_a(a, b), of_b(b, a);
+    const Sides<V> of_a(a, b), of_b(b, a);
     const Mask<V> below_a = put_lone_corner_first(a, of_a), below_b = put_lone_corner_first(b, of_b);
     turn_over(b, below_a);
     turn_over(a, below_b);
     const Mask<V> found = ~(of_a.on_one_side() | of_b.on_one_side()) & intervals_overlap(a, b);
-    const Mask<V> in_one_plane = of_a.all_zero() | of_b.all_zero();
+    const Mask<V> in_one_plane = of_a.all_in_plane() | of_b.all_in_plane();
     for (int i = 0; i < lanes; ++i) hit[i] = found[i] & 1;
     if (segments || any(in_one_plane))
         for (int i = 0; i < lanes; ++i)
