@@ -100,8 +100,7 @@ TEST_CASE("the two oracles of intersecting triangles agree, and the families hav
         CHECK(hits > 0);
         with_misses += hits < 30;
     }
-    CHECK(with_misses ==
-          triangle_families().size() - 3);  // sides that touch, and what is shared
+    CHECK(with_misses == triangle_families().size() - 3);  // sides that touch, and what is shared
 }
 
 TEST_CASE("exact decides as rational arithmetic does, in every family", "[narrowphase]") {
