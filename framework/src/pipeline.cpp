@@ -90,6 +90,7 @@ void Pipeline::number_rows() {
     rows_.clear();
     unbounded_.clear();
     row_is_static_.clear();
+    row_is_reference_.clear();
     for (std::uint32_t body = 0; body < world.size(); ++body) {
         if (world.removed[body]) continue;
         if (world.shape_of(body).kind == ShapeKind::half_space) {
@@ -98,7 +99,10 @@ void Pipeline::number_rows() {
         }
         rows_.push_back(body);
         row_is_static_.push_back(world.is_static[body]);
+        row_is_reference_.push_back(world.is_reference[body]);
     }
+    if (std::find(row_is_reference_.begin(), row_is_reference_.end(), 1) == row_is_reference_.end())
+        row_is_reference_.clear();
     row_of_.assign(world.size(), no_row);
     for (std::uint32_t row = 0; row < rows_.size(); ++row) row_of_[rows_[row]] = row;
     bounds_.resize(rows_.size());
@@ -177,7 +181,7 @@ void Pipeline::find_pairs() {
     run_stage(
         StageKind::broadphase, broadphase_plugin->descriptor->name,
         [&] {
-            broadphase->find_pairs({bounds_, row_is_static_, generation_}, found_);
+            broadphase->find_pairs(broadphase_input(), found_);
             for (const Pair& pair : found_)
                 if (!(pair.a < pair.b && pair.b < rows_.size()))
                     throw std::runtime_error("it reported the pair " + pair_text(pair) + " of " +

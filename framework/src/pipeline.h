@@ -108,6 +108,7 @@ private:
     void reserve();
     void number_rows();
     void update_bounds();
+    BroadphaseInput broadphase_input() const { return {bounds_, row_is_static_, generation_, row_is_reference_}; }
     void find_pairs();
     void add_half_space_pairs();
     bool reaches_behind(const Aabb& box, std::uint32_t wall) const;
@@ -148,6 +149,7 @@ private:
     std::vector<std::uint32_t> unbounded_;      // half-space bodies
     std::vector<Aabb> bounds_;                  // by row
     std::vector<std::uint8_t> row_is_static_;
+    std::vector<std::uint8_t> row_is_reference_;  // empty where there is none
     std::uint64_t generation_ = 0;
     std::vector<Pair> found_;   // what the broadphase said, rows
     std::vector<Pair> routed_;  // pairs that a rule takes and whose boxes do overlap

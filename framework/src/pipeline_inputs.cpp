@@ -108,7 +108,7 @@ void Pipeline::restore_memory(const Scene& scene) {
 
 void Pipeline::outline(Outline& outline) const {
     if (broadphase_plugin->descriptor->capabilities.outline)
-        broadphase->outline({bounds_, row_is_static_, generation_}, outline);
+        broadphase->outline(broadphase_input(), outline);
 }
 
 void Pipeline::find_crossings(std::vector<CrossingLine>& crossings) const {

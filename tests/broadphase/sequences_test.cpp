@@ -103,6 +103,7 @@ struct Subject {
 
 const std::vector<Subject>& subjects() {
     static const std::vector<Subject> subjects{
+        {"regions", {}},
         {"sweep_and_prune", {{"method", {std::string("scratch"), {}}}}},
         {"sweep_and_prune", {{"method", {std::string("incremental"), {}}}}},
     };

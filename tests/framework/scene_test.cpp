@@ -60,6 +60,7 @@ torque = [0, 1, 0]
 [[body]]
 shape = "floor"
 static = true
+reference = true
 [[body]]
 shape = "tetra"
 density = 2
@@ -123,6 +124,7 @@ iterations = 10
     CHECK(world.constant_torque[0] == Vec3::UnitY());
     CHECK(world.inverse_mass[0] == 0.25);
     CHECK(world.is_static[1] == 1);
+    CHECK(world.is_reference == std::vector<std::uint8_t>{0, 1, 0});
     CHECK(1 / world.inverse_mass[2] == Approx(72));
     CHECK(world.model_position(2).norm() == Approx(0).margin(1e-12));
 

@@ -32,6 +32,7 @@ BodyDescription read_constants(TableReader& reader, const NameTable& shapes, con
     body.material = read_material_name(reader, materials);
     body.kind = reader.text("kind", body.kind);
     body.is_static = reader.boolean("static", false);
+    body.is_reference = reader.boolean("reference", false);
     body.mass = read_mass(reader, body, world);
     body.constant_force = reader.vector("force", Vec3::Zero());
     body.constant_torque = reader.vector("torque", Vec3::Zero());
