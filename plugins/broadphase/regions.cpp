@@ -186,7 +186,7 @@ KOLIZE_PLUGIN(Regions, .name = "regions", .summary = "space divided by the boxes
                   "prune along one axis: Ericson, Real-Time Collision Detection (2005), 7.5",
               .cost =
                   "O(N log N) to file and sort, and a comparison for each two boxes of a region whose extents overlap "
-                  "along one axis. Without references one region holds everything. About 60 bytes a box.",
+                  "along one axis. Without references one region holds everything. About 100 bytes a box.",
               .accuracy = "Exact: a pair is reported if and only if its closed boxes overlap.",
               .choose =
                   "Scenes that bodies with reference = true divide by nature: the rooms of a building, the pieces of "
