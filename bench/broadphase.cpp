@@ -1,4 +1,5 @@
-// bench_broadphase: our broadphases, Bullet's and FCL's on the same boxes, one thread, a complete pair list each frame.
+// bench_broadphase: our broadphases and those of other libraries on the same boxes, one thread, a complete pair list
+// each frame.
 #include "broadphase_rivals.h"
 
 #include <kolize/plugin_library.h>
@@ -7,9 +8,10 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <iostream>
+#include <ctime>
+#include <map>
+#include <numeric>
 
 namespace {
 
@@ -24,8 +26,8 @@ public:
         name = "kolize " + plugin;
     }
     void find_pairs(const Frame& frame, std::vector<Pair>& pairs) override {
-        is_static_.resize(frame.size(), 0);
-        stage_->find_pairs({frame, is_static_, 1}, pairs);
+        is_static_.resize(frame.boxes.size(), 0);
+        stage_->find_pairs({frame.boxes, is_static_, 1}, pairs);
     }
 
 private:
@@ -40,16 +42,22 @@ struct Entry {
     bool agrees = true;              // in every frame as many pairs as the first contestant
 };
 
+// Of all threads in the processor, in which other programs have no part.
+double milliseconds() {
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
 void run_round(Entry& entry, const std::vector<Frame>& frames, bool timed) {
-    using Clock = std::chrono::steady_clock;
     std::vector<Pair> found;
     entry.pairs.clear();
     for (const Frame& frame : frames) {
         found.clear();
-        const auto start = Clock::now();
+        const double start = milliseconds();
         entry.contestant->find_pairs(frame, found);
-        const std::chrono::duration<double, std::milli> took = Clock::now() - start;
-        if (timed) entry.milliseconds.push_back(took.count());
+        const double took = milliseconds() - start;
+        if (timed) entry.milliseconds.push_back(took);
         entry.pairs.push_back(found.size());
     }
 }
@@ -72,54 +80,84 @@ double quantile(std::vector<double> values, double part) {
     return *at;
 }
 
-std::vector<Entry> enter(const kolize::PluginLibrary& library, kolize::Host& host, const Frame& first) {
+double mean(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+std::vector<Entry> enter(const kolize::PluginLibrary& library, kolize::Host& host, const Frame& first,
+                         const std::vector<std::string>& words) {
     constexpr std::size_t brute_force_limit = 2000;  // boxes; its time grows with the square
+    const auto wanted = [&](const std::string& name) {
+        const auto in_name = [&](const std::string& word) { return name.find(word) != std::string::npos; };
+        return words.empty() || std::any_of(words.begin(), words.end(), in_name);
+    };
     std::vector<Entry> entries;
     for (const std::string& name : library.names(kolize::StageKind::broadphase))
-        if (name != "brute_force" || first.size() <= brute_force_limit)
+        if (wanted("kolize " + name) && (name != "brute_force" || first.boxes.size() <= brute_force_limit))
             entries.push_back({std::make_unique<Plugin>(name, library, host), {}, {}, true});
-    for (auto& rival : bench::rival_broadphases(first)) entries.push_back({std::move(rival), {}, {}, true});
+    for (auto& rival : bench::rival_broadphases(first, wanted)) entries.push_back({std::move(rival), {}, {}, true});
     return entries;
 }
 
 // False if two of them disagree about the number of pairs.
-bool print_table(const std::vector<Entry>& entries, std::size_t boxes) {
+bool print_table(const std::vector<Entry>& entries, const std::string& title) {
     double fastest_rival = kolize::infinity;
     for (const Entry& entry : entries)
         if (!entry.contestant->name.starts_with("kolize"))
             fastest_rival = std::min(fastest_rival, quantile(entry.milliseconds, 0.5));
-    std::printf("\n%zu boxes, %zu pairs in the last frame\n%-28s %12s %12s %22s\n", boxes, entries[0].pairs.back(), "",
-                "median ms", "p95 ms", "fastest rival / this");
+    std::printf("\n%s, %zu pairs in the last frame\n%-28s %12s %12s %12s %22s\n", title.c_str(),
+                entries[0].pairs.back(), "", "median ms", "mean ms", "p95 ms", "fastest rival / this");
     bool agree = true;
     for (const Entry& entry : entries) {
         const double median = quantile(entry.milliseconds, 0.5);
-        std::printf("%-28s %12.3f %12.3f %22.2f%s\n", entry.contestant->name.c_str(), median,
-                    quantile(entry.milliseconds, 0.95), fastest_rival / median,
+        std::printf("%-28s %12.3f %12.3f %12.3f %22.2f%s\n", entry.contestant->name.c_str(), median,
+                    mean(entry.milliseconds), quantile(entry.milliseconds, 0.95), fastest_rival / median,
                     entry.agrees ? "" : "   DIFFERENT PAIR COUNT");
         agree = agree && entry.agrees;
     }
+    std::fflush(stdout);
     return agree;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app("Broadphases of kolize, Bullet and FCL on the same moving boxes. Example: bench_broadphase --n 1e4");
+    CLI::App app(
+        "Broadphases on the same moving boxes. Example: bench_broadphase --n 1e4 --workload uniform,clustered");
+    const std::map<std::string, bench::Workload> workloads{{"uniform", bench::Workload::uniform},
+                                                           {"clustered", bench::Workload::clustered},
+                                                           {"power_law", bench::Workload::power_law}};
+    const std::map<std::string, bench::Movers> movers{{"all", bench::Movers::all},
+                                                      {"same_tenth", bench::Movers::same_tenth},
+                                                      {"random_tenth", bench::Movers::random_tenth}};
     std::vector<double> counts{1e3, 1e4, 1e5};
+    std::vector<std::string> chosen_workloads{"uniform"}, chosen_movers{"all"}, words;
     std::size_t frames = 10, repeat = 5;
     app.add_option("--n", counts, "numbers of boxes")->delimiter(',')->check(CLI::Range(2.0, 1e8));
+    app.add_option("--workload", chosen_workloads)->delimiter(',')->check(CLI::IsMember(workloads));
+    app.add_option("--moving", chosen_movers, "which boxes move in a frame")
+        ->delimiter(',')
+        ->check(CLI::IsMember(movers));
+    app.add_option("--only", words, "those with one of these words in their name")->delimiter(',');
     app.add_option("--frames", frames, "frames in a round")->check(CLI::Range(1, 10000))->capture_default_str();
     app.add_option("--repeat", repeat, "timed rounds")->check(CLI::Range(1, 10000))->capture_default_str();
     CLI11_PARSE(app, argc, argv);
 
     const kolize::PluginLibrary library({KOLIZE_PLUGIN_DIR});
     const auto host = kolize::make_host(1);
-    std::puts("Debian's libfcl is built with its assertions on; upstream's is somewhat faster.");
+    std::puts("Debian's libfcl and Embree are built with their assertions on; upstream's are somewhat faster.");
     bool agree = true;
-    for (const double count : counts) {
-        bench::MovingBoxes boxes(static_cast<std::size_t>(count), 1);
-        const std::vector<Entry> entries = run(enter(library, *host, boxes.take(1).front()), boxes, frames, repeat);
-        agree = print_table(entries, static_cast<std::size_t>(count)) && agree;
-    }
+    for (const double count : counts)
+        for (const std::string& workload : chosen_workloads)
+            for (const std::string& moving : chosen_movers) {
+                const auto boxes = static_cast<std::size_t>(count);
+                bench::MovingBoxes motion(workloads.at(workload), boxes, movers.at(moving));
+                const std::vector<Frame> first = motion.take(1);
+                const std::vector<Entry> entries =
+                    run(enter(library, *host, first.front(), words), motion, frames, repeat);
+                if (entries.empty()) continue;
+                agree = print_table(entries, std::to_string(boxes) + " boxes, " + workload + ", moving: " + moving) &&
+                        agree;
+            }
     return agree ? 0 : 1;
 }

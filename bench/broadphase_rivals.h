@@ -5,6 +5,7 @@
 
 #include <kolize/broadphase.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,7 +21,9 @@ public:
     std::string name;
 };
 
-// Bullet and FCL, each with its boxes as they are in `first`.
-std::vector<std::unique_ptr<Contestant>> rival_broadphases(const Frame& first);
+// Bullet, FCL, CGAL and Embree, each with its boxes as they are in `first`. Made one by one, because some are large:
+// only those whose name `wanted` takes.
+std::vector<std::unique_ptr<Contestant>> rival_broadphases(const Frame& first,
+                                                           const std::function<bool(const std::string&)>& wanted);
 
 }  // namespace bench
