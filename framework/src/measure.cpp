@@ -142,11 +142,12 @@ void Measure::moved(const World& world, std::uint32_t body, const BodyState& bef
     }
 }
 
-void Measure::after_response(const World& world, const std::vector<Contact>& rows, double dissipated_J) {
+void Measure::after_response(const World& world, const std::vector<Contact>& rows, double dissipated_J, bool rests) {
     exchange_.work -= dissipated_J;
     for (const Contact& c : rows) {
         max_depth_ = std::max(max_depth_, c.depth);
-        const bool overlaps = c.depth > 0 || c.normal.isZero(0);  // no more than that may have been asked for
+        const bool overlaps =
+            !rests && (c.depth > 0 || c.normal.isZero(0));  // no more than that may have been asked for
         if (overlaps && (touching_.empty() || touching_.back() != Pair{c.a, c.b})) touching_.push_back({c.a, c.b});
         if (world.is_static[c.a] == world.is_static[c.b]) continue;
         const bool on_a = world.is_static[c.b];

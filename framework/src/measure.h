@@ -56,7 +56,8 @@ public:
     // A live body has moved freely for `time` seconds.
     void moved(const World& world, std::uint32_t body, const BodyState& before, const BodyState& after, double time);
     // After the response: impulses from static bodies, energy that restitution took, depths, which pairs touch.
-    void after_response(const World& world, const std::vector<Contact>& contacts, double dissipated_J);
+    // Pairs that may rest on each other are never stuck.
+    void after_response(const World& world, const std::vector<Contact>& contacts, double dissipated_J, bool rests);
     // J, of what is done to velocities besides motion and response.
     void add_work(double work) { exchange_.work += work; }
     // Whatever `alter` does to the world counts as exchanged.

@@ -314,7 +314,7 @@ void Pipeline::respond_with(Rule& rule, double dt, double settle) {
     measure.unresolved += output.unresolved;
     for (Contact& c : rule.contacts)
         if (settle > 0) c.depth = 0;  // it was no depth: nothing overlaps
-    measure.after_response(world, rule.contacts, output.dissipated_J);
+    measure.after_response(world, rule.contacts, output.dissipated_J, rule.plugin->descriptor->capabilities.rests);
     if (moves) measure.change(world, [&] { swap_places(rule); });
 }
 

@@ -54,16 +54,17 @@ struct Row {
     std::uint32_t a = 0, b = 0;  // into the moving bodies; 0 stands for all static ones
     Vec3 normal, tangent[2];
     Vec3 arm_a, arm_b;
-    double k = 0;         // normal velocity per unit impulse, 1/kg
-    Mat2 slip_inverse;    // impulse per unit of slip
-    Vec2 coupling;        // normal velocity per unit friction
-    double friction = 0;  // coefficient
-    double depth = 0;     // m, when found
-    double slop = 0;      // m, the depth at which it rests
-    double target = 0;    // least normal velocity, m/s
-    bool rests = false;   // approaches no faster than what the forces of the step make of rest
-    bool sticks = false;  // while the island is solved directly
-    double lambda = 0;    // N s
+    double k = 0;          // normal velocity per unit impulse, 1/kg
+    double slip_step = 0;  // likewise, the same in all directions
+    Mat2 slip_inverse;     // impulse per unit of slip
+    Vec2 coupling;         // normal velocity per unit friction
+    double friction = 0;   // coefficient
+    double depth = 0;      // m, when found
+    double slop = 0;       // m, the depth at which it rests
+    double target = 0;     // least normal velocity, m/s
+    bool rests = false;    // approaches no faster than what the forces of the step make of rest
+    bool sticks = false;   // while the island is solved directly
+    double lambda = 0;     // N s
     Vec2 lambda_t = Vec2::Zero();
 
     const Vec3& direction(int i) const { return i == 0 ? normal : tangent[i - 1]; }
@@ -321,6 +322,7 @@ private:
         Mat2 slip;
         slip << mass + answer(1, 1), across, across, mass + answer(2, 2);
         row.slip_inverse = slip.inverse();
+        row.slip_step = 1 / slip.trace();  // not beyond the stiffest direction
         row.coupling = {answer(0, 1), answer(0, 2)};
     }
 
@@ -369,12 +371,16 @@ private:
         return largest;
     }
 
-    // To the impulse that stops the slip, or to the edge of the cone.
+    // To the impulse that stops the slip; where that leaves the cone, towards the point of its edge that is against the
+    // slip: a step along the slip itself, because the metric of slip_inverse would turn it.
     static Vec2 friction_change(const Row& row, const Vec3& velocity) {
         const Vec2 slip(row.tangent[0].dot(velocity), row.tangent[1].dot(velocity));
+        const double limit = row.friction * row.lambda;
         Vec2 wanted = row.lambda_t - row.slip_inverse * slip;
-        const double limit = row.friction * row.lambda, length = wanted.norm();
-        if (length > limit) wanted *= limit / length;
+        if (wanted.norm() > limit) {
+            wanted = row.lambda_t - row.slip_step * slip;
+            if (const double length = wanted.norm(); length > limit) wanted *= limit / length;
+        }
         return wanted - row.lambda_t;
     }
 

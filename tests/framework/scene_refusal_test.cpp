@@ -98,7 +98,8 @@ TEST_CASE("what is wrong with a body is said in one sentence with its place", "[
         {"name = \"b\"\nshape = \"ball\"\n[[body]]\nname = \"b\"\nshape = \"ball\"",
          "scene.toml:9:8: there is a body 'b' already, at scene.toml:6:8"},
         {"name = \"b\"\nshape = \"ball\"\nspin = 1",
-         "scene.toml:8:1: no key 'spin' in body 'b'; there are name, shape, material, kind, static, mass, density, "
+         "scene.toml:8:1: no key 'spin' in body 'b'; there are name, shape, material, kind, static, reference, mass, "
+         "density, "
          "force, torque, from, position, orientation, velocity, angular_velocity"},
     }));
     CHECK(complaint(ball + "[[body]]\n" + text) == sentence);
