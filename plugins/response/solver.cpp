@@ -170,6 +170,15 @@ private:
         bool rests = true;  // all of it
     };
 
+    // An unknown of a direct solution.
+    struct Axis {
+        std::uint32_t row;  // of the island
+        int direction;      // 0: normal, 1, 2: tangents
+        double scale;
+        std::uint32_t body[2];
+        Vec3 along, moment[2], turning[2];  // turning: angular velocity per unit impulse
+    };
+
     // ---------------------------------------------------------------- contacts to rows
 
     void load(const ResponseInput& input, World& world) {
@@ -385,14 +394,12 @@ private:
     }
 
     // All impulses of the island at once. Friction sticks at first; where it leaves its cone it slides, as a given
-    // impulse on the cone's edge, until it would stick again. In turns, until nothing changes any more.
+    // impulse on the cone's edge, until it would stick again. In turns, until no cone is left any more.
     void solve_directly(const Island& island, double enough) {
         load_problem(island);
         for (Row& row : rows_of(island)) row.sticks = row.friction > 0;
         for (int turn = 0; turn < 16; ++turn) {
-            const double changed = solve_problem(island);
-            const double slipped = keep_to_cones(island, enough);
-            if (std::max(changed, slipped) <= enough) return;
+            if (!solve_problem(island) || keep_to_cones(island, enough) <= enough) return;
         }
     }
 
@@ -417,45 +424,56 @@ private:
         const std::span<const Row> rows = rows_of(island);
         axes_.clear();
         for (std::uint32_t i = 0; i < rows.size(); ++i)
-            for (int d = 0; d < (rows[i].friction > 0 ? 3 : 1); ++d)
-                axes_.push_back({i, d, 1 / std::sqrt(coupling(rows[i], d, rows[i], d))});
+            for (int d = 0; d < (rows[i].friction > 0 ? 3 : 1); ++d) add_axis(i, rows[i], d);
         problem_.resize(axes_.size());
         for (std::size_t i = 0; i < axes_.size(); ++i)
             for (std::size_t j = 0; j <= i; ++j) {
-                const double k =
-                    coupling(rows[axes_[i].row], axes_[i].direction, rows[axes_[j].row], axes_[j].direction);
-                if (k != 0) problem_.set(i, j, k * axes_[i].scale * axes_[j].scale);
+                const Axis &x = axes_[i], &y = axes_[j];
+                if (x.body[0] == y.body[0] || x.body[0] == y.body[1] || x.body[1] == y.body[0] ||
+                    x.body[1] == y.body[1])
+                    if (const double k = coupling(x, y); k != 0) problem_.set(i, j, k * x.scale * y.scale);
             }
     }
 
-    // Velocity along a direction of one row per unit impulse along one of the other, 1/kg.
-    double coupling(const Row& x, int along_x, const Row& y, int along_y) const {
-        if (x.a != y.a && x.a != y.b && x.b != y.a && x.b != y.b) return 0;
-        const Vec3 &u = x.direction(along_x), &v = y.direction(along_y);
-        const auto through = [&](std::uint32_t i, std::uint32_t j, const Vec3& arm_x, const Vec3& arm_y) {
-            if (i == 0 || i != j) return 0.0;
-            const Moving& body = bodies_[i];
-            return body.inverse_mass * u.dot(v) + arm_x.cross(u).dot(body.inverse_inertia * arm_y.cross(v));
-        };
-        return through(x.a, y.a, x.arm_a, y.arm_a) + through(x.b, y.b, x.arm_b, y.arm_b) -
-               through(x.a, y.b, x.arm_a, y.arm_b) - through(x.b, y.a, x.arm_b, y.arm_a);
+    void add_axis(std::uint32_t number, const Row& row, int direction) {
+        Axis& axis = axes_.emplace_back();
+        axis.row = number;
+        axis.direction = direction;
+        axis.body[0] = row.a;
+        axis.body[1] = row.b;
+        axis.along = row.direction(direction);
+        for (const int side : {0, 1}) {
+            axis.moment[side] = (side ? row.arm_b : row.arm_a).cross(axis.along);
+            axis.turning[side] = bodies_[axis.body[side]].inverse_inertia * axis.moment[side];
+        }
+        axis.scale = 1 / std::sqrt(coupling(axis, axis));
     }
 
-    // Returns the largest change of velocity at a contact, m/s. Where no answer is found the passes that follow do what
-    // they can.
-    double solve_problem(const Island& island) {
+    // Velocity along one axis per unit impulse along the other, 1/kg.
+    double coupling(const Axis& x, const Axis& y) const {
+        double sum = 0;
+        for (const int i : {0, 1})
+            for (const int j : {0, 1}) {
+                if (x.body[i] == 0 || x.body[i] != y.body[j]) continue;
+                const double k = bodies_[x.body[i]].inverse_mass * x.along.dot(y.along) + x.moment[i].dot(y.turning[j]);
+                sum += i == j ? k : -k;
+            }
+        return sum;
+    }
+
+    // False where no answer is found: the passes that follow do what they can.
+    bool solve_problem(const Island& island) {
         using Kind = ComplementarityProblem::Kind;
         const std::span<Row> rows = rows_of(island);
         problem_.begin();
         for (std::size_t i = 0; i < axes_.size(); ++i) {
             const Axis& axis = axes_[i];
             const Row& row = rows[axis.row];
-            const double lack = (axis.direction ? 0 : row.target) - row.direction(axis.direction).dot(velocity(row));
+            const double lack = (axis.direction ? 0 : row.target) - axis.along.dot(velocity(row));
             const Kind kind = axis.direction == 0 ? Kind::pushes : row.sticks ? Kind::holds : Kind::given;
             problem_.start(i, kind, row.impulse(axis.direction) / axis.scale, lack * axis.scale);
         }
-        if (!problem_.solve()) return 0;
-        double largest = 0;
+        if (!problem_.solve()) return false;
         for (std::size_t i = 0; i < axes_.size(); ++i) {
             const Axis& axis = axes_[i];
             Row& row = rows[axis.row];
@@ -464,10 +482,9 @@ private:
             const double value = problem_.solution(i) * axis.scale, change = value - impulse;
             if (change == 0) continue;
             impulse = value;
-            apply(row, change * row.direction(axis.direction));
-            largest = std::max(largest, std::abs(change) / (axis.scale * axis.scale));
+            apply(row, change * axis.along);
         }
-        return largest;
+        return true;
     }
 
     // Contacts that still approach by a hundredth of the fastest velocity.
@@ -609,7 +626,7 @@ private:
     double tolerance_ = 1e-5;
     bool warm_start_ = true;
     double slop_ = 1e-3;
-    double push_ = 0.05;
+    double push_ = 0.2;
     double sleep_time_ = 0;
     double sleep_speed_ = 0.01;
 
@@ -619,11 +636,6 @@ private:
     std::vector<std::pair<std::uint32_t, std::uint32_t>> order_;  // root of the island, contact
     std::vector<Island> islands_;
     std::vector<Row> rows_;
-    struct Axis {
-        std::uint32_t row;  // of the island
-        int direction;      // 0: normal, 1, 2: tangents
-        double scale;
-    };
     std::vector<Axis> axes_;  // the unknowns of problem_
     ComplementarityProblem problem_;
     bool overlaps_ = false;                     // a step to go through, not a time of impact

@@ -22,7 +22,7 @@ public:
     // Problems up to this size allocate nothing.
     void reserve(std::size_t size);
 
-    // Forgets everything: K, q and lambda are 0.
+    // Forgets everything: K, q and lambda are 0. Entries of K are set before the first solve().
     void resize(std::size_t size);
     // K(i, j) and K(j, i), j <= i. Rows whose entries stand near the diagonal cost less.
     void set(std::size_t i, std::size_t j, double value) {
@@ -44,15 +44,18 @@ private:
     void factorise();
     void substitute();
     void find_wrong();
+    double pull(std::size_t i) const;
 
     std::size_t size_ = 0;
     std::vector<double> matrix_, factor_;    // row by row
     std::vector<std::size_t> first_, last_;  // columns of a row between which it is not 0
     std::vector<std::size_t> envelope_;      // likewise of the factor, the first one
     std::vector<double> right_, lambda_, part_;
+    std::vector<double> inverse_;  // of the factor's diagonal
     std::vector<Kind> kind_;
     std::vector<std::uint8_t> pushes_;         // or holds
     std::vector<std::size_t> chosen_, wrong_;  // rows that push; rows whose lambda or w has the wrong sign
+    std::vector<std::size_t> factorised_;      // rows of the factor
 };
 
 }  // namespace kolize
