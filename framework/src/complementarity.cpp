@@ -1,9 +1,11 @@
 #include <kolize/complementarity.h>
 
-#include <Eigen/Core>
-
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+
+// The same operations in the same order on vectors of two and of four numbers: the same bits on every machine.
+#define KOLIZE_WIDE [[gnu::target_clones("avx2", "default")]]
 
 namespace kolize {
 
@@ -11,18 +13,29 @@ namespace {
 
 constexpr double regularisation = 1e-12;  // of the diagonal
 
-// Several sums side by side, in an order that does not depend on the machine.
-double dot(const double* x, const double* y, std::size_t size) {
-    using Vector = Eigen::Map<const Eigen::VectorXd>;
-    return Vector(x, static_cast<Eigen::Index>(size)).dot(Vector(y, static_cast<Eigen::Index>(size)));
+using Four = double __attribute__((vector_size(32)));
+
+[[gnu::always_inline]] inline double dot(const double* x, const double* y, std::size_t size) {
+    Four sums{};
+    std::size_t i = 0;
+    for (; i + 4 <= size; i += 4) {
+        Four a, b;
+        std::memcpy(&a, x + i, sizeof a);
+        std::memcpy(&b, y + i, sizeof b);
+        sums += a * b;
+    }
+    double rest = 0;
+    for (; i < size; ++i) rest += x[i] * y[i];
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest;
 }
 
 }  // namespace
 
 void ComplementarityProblem::reserve(std::size_t size) {
     for (auto* table : {&matrix_, &factor_}) table->reserve(size * size);
-    for (auto* column : {&right_, &lambda_, &part_, &inverse_}) column->reserve(size);
+    for (auto* column : {&right_, &lambda_, &part_, &inverse_, &start_}) column->reserve(size);
     pushes_.reserve(size);
+    barred_.reserve(size);
     kind_.reserve(size);
     for (auto* list : {&chosen_, &factorised_, &wrong_, &first_, &last_, &envelope_}) list->reserve(size);
 }
@@ -40,6 +53,7 @@ void ComplementarityProblem::resize(std::size_t size) {
 void ComplementarityProblem::begin() {
     right_.assign(size_, 0);
     lambda_.assign(size_, 0);
+    start_.assign(size_, 0);
     pushes_.assign(size_, 0);
     kind_.assign(size_, Kind::pushes);
 }
@@ -48,28 +62,66 @@ void ComplementarityProblem::start(std::size_t i, Kind kind, double lambda, doub
     kind_[i] = kind;
     right_[i] += lack;
     if (kind == Kind::given) return;
+    start_[i] = lambda;
     for (std::size_t j = first_[i]; lambda != 0 && j <= last_[i]; ++j) right_[j] += matrix_[j * size_ + i] * lambda;
     pushes_[i] = kind == Kind::holds || lambda > 0 || lack > 0;
 }
 
-// Exchanges all rows of the wrong sign at once as long as that makes them fewer, then the last one alone.
+// Exchanges all rows of the wrong sign at once as long as that makes them fewer.
 bool ComplementarityProblem::solve() {
-    constexpr int patience = 10;
+    constexpr int patience = 4;
     std::size_t fewest = size_ + 1;
-    int left = patience;
-    for (std::size_t round = 0; round < 20 + 4 * size_; ++round) {
+    for (int left = patience; left > 0; --left) {
         solve_chosen();
         find_wrong();
         if (wrong_.empty()) return true;
         if (wrong_.size() < fewest) {
             fewest = wrong_.size();
             left = patience;
-        } else if (--left < 0) {
-            wrong_.erase(wrong_.begin(), wrong_.end() - 1);
         }
         for (const std::size_t i : wrong_) pushes_[i] = !pushes_[i];
     }
+    return descend();
+}
+
+// One row after the other, and the energy lambda K lambda / 2 - q lambda always less: slower, and sure to end. Lawson
+// and Hanson, Solving Least Squares Problems (1974), chapter 23, from the impulses of start().
+bool ComplementarityProblem::descend() {
+    for (std::size_t i = 0; i < size_; ++i) pushes_[i] = kind_[i] == Kind::holds || start_[i] > 0;
+    barred_.assign(size_, 0);
+    for (std::size_t round = 0; round < 20 + 10 * size_; ++round) {
+        solve_chosen();
+        if (step_back()) continue;
+        start_ = lambda_;
+        find_wrong();
+        const auto pull_of = [&](std::size_t i) { return barred_[i] ? 0 : pull(i) - right_[i]; };
+        const auto worst = std::min_element(wrong_.begin(), wrong_.end(),
+                                            [&](std::size_t i, std::size_t j) { return pull_of(i) < pull_of(j); });
+        if (worst == wrong_.end() || barred_[*worst]) return true;
+        pushes_[*worst] = 1;
+    }
     return false;
+}
+
+// Goes from start_ towards lambda_ until a row does not push any more, and lets that one go; false if all still push.
+bool ComplementarityProblem::step_back() {
+    double share = 1;
+    std::size_t first = size_;
+    for (const std::size_t i : chosen_) {
+        if (kind_[i] != Kind::pushes || lambda_[i] >= 0) continue;
+        const double part = start_[i] / (start_[i] - lambda_[i]);
+        if (part >= share) continue;
+        share = part;
+        first = i;
+    }
+    if (first == size_) return false;
+    for (std::size_t i = 0; i < size_; ++i) start_[i] += share * (lambda_[i] - start_[i]);
+    start_[first] = 0;
+    pushes_[first] = 0;
+    // What has only just come in and has to leave at once was out by rounding alone.
+    if (share > 0) std::fill(barred_.begin(), barred_.end(), 0);
+    barred_[first] = share == 0;
+    return true;
 }
 
 // Row i of K lambda.
@@ -111,7 +163,7 @@ void ComplementarityProblem::solve_chosen() {
     }
 }
 
-void ComplementarityProblem::factorise() {
+KOLIZE_WIDE void ComplementarityProblem::factorise() {
     const std::size_t n = chosen_.size();
     factor_.resize(n * n);
     part_.resize(n);
@@ -136,7 +188,7 @@ void ComplementarityProblem::factorise() {
 }
 
 // part = (L L^T)^-1 part.
-void ComplementarityProblem::substitute() {
+KOLIZE_WIDE void ComplementarityProblem::substitute() {
     const std::size_t n = chosen_.size();
     for (std::size_t i = 0; i < n; ++i) {
         const std::size_t m = envelope_[i];

@@ -38,6 +38,7 @@ struct Moving {
     Mat3 inverse_inertia = Mat3::Zero();  // world axes, 1/(kg m^2)
     // m/s and rad/s; m and rad while positions are put right
     Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();
+    std::size_t first_axis = 0;  // that touches it, of a direct solution
     bool pushed = false;
     bool rests = false;  // it moves as its island's impulses say
 
@@ -423,16 +424,22 @@ private:
     void load_problem(const Island& island) {
         const std::span<const Row> rows = rows_of(island);
         axes_.clear();
+        for (const Row& row : rows) bodies_[row.a].first_axis = bodies_[row.b].first_axis = rows_.size() * 3;
         for (std::uint32_t i = 0; i < rows.size(); ++i)
             for (int d = 0; d < (rows[i].friction > 0 ? 3 : 1); ++d) add_axis(i, rows[i], d);
         problem_.resize(axes_.size());
+        for (std::size_t i = 0; i < axes_.size(); ++i) {
+            const Axis& x = axes_[i];
+            std::size_t first = i;
+            for (const std::uint32_t body : x.body)
+                if (body) first = std::min(first, bodies_[body].first_axis);
+            for (std::size_t j = first; j <= i; ++j)
+                if (const double k = coupling(x, axes_[j]); k != 0) problem_.set(i, j, k * x.scale * axes_[j].scale);
+        }
+        // Corners that lie in a plane but for rounding, and all stick, would pull against each other without a bound.
+        constexpr double yields = 1e-9;
         for (std::size_t i = 0; i < axes_.size(); ++i)
-            for (std::size_t j = 0; j <= i; ++j) {
-                const Axis &x = axes_[i], &y = axes_[j];
-                if (x.body[0] == y.body[0] || x.body[0] == y.body[1] || x.body[1] == y.body[0] ||
-                    x.body[1] == y.body[1])
-                    if (const double k = coupling(x, y); k != 0) problem_.set(i, j, k * x.scale * y.scale);
-            }
+            if (axes_[i].direction > 0) problem_.set(i, i, 1 + yields);
     }
 
     void add_axis(std::uint32_t number, const Row& row, int direction) {
@@ -447,6 +454,8 @@ private:
             axis.turning[side] = bodies_[axis.body[side]].inverse_inertia * axis.moment[side];
         }
         axis.scale = 1 / std::sqrt(coupling(axis, axis));
+        for (const std::uint32_t body : axis.body)
+            bodies_[body].first_axis = std::min(bodies_[body].first_axis, axes_.size() - 1);
     }
 
     // Velocity along one axis per unit impulse along the other, 1/kg.
@@ -515,7 +524,7 @@ private:
         return sum;
     }
 
-    // Velocities become displacements, and impulses what makes them: the same equations, without friction.
+    // Velocities become displacements, and impulses what makes them: the same equations.
     void put_right(double dt, World& world) {
         for (const Island& island : islands_)
             for (const Row& row : rows_of(island)) bodies_[row.a].rests = bodies_[row.b].rests = island.rests;
@@ -539,14 +548,25 @@ private:
         }
     }
 
-    // Of what is deeper than the slop a share is to go; the others may close up to it. False if nothing is deeper.
+    // Of what is deeper than the slop a share is to go; the others may close up to it. Friction is left out where
+    // bodies are about equally heavy: it costs twice the rest, and only a light body between heavy ones is squeezed out
+    // without it. False if nothing is deeper.
     bool set_displacements(const Island& island) {
+        constexpr double alike = 4;
+        double lightest = 0, heaviest = infinity;
+        for (const Row& row : rows_of(island))
+            for (const std::uint32_t body : {row.a, row.b})
+                if (body) {
+                    lightest = std::max(lightest, bodies_[body].inverse_mass);
+                    heaviest = std::min(heaviest, bodies_[body].inverse_mass);
+                }
         bool deep = false;
         for (Row& row : rows_of(island)) {
             const double parted = row.normal.dot(velocity(row)), excess = row.depth - parted - row.slop;
-            deep = deep || excess > 1e-3 * row.slop;
+            deep = deep || excess > 0.02 * row.slop;
             row.target = parted + (excess > 0 ? push_ : 1) * excess;
-            row.lambda = row.friction = 0;
+            if (lightest <= alike * heaviest) row.friction = 0;
+            row.lambda = 0;
             row.lambda_t = Vec2::Zero();
             fastest_ = std::max(fastest_, excess);
         }

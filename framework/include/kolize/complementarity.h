@@ -40,6 +40,8 @@ public:
     double solution(std::size_t i) const { return kind_[i] == Kind::holds || lambda_[i] > 0 ? lambda_[i] : 0; }
 
 private:
+    bool descend();
+    bool step_back();
     void solve_chosen();
     void factorise();
     void substitute();
@@ -50,10 +52,11 @@ private:
     std::vector<double> matrix_, factor_;    // row by row
     std::vector<std::size_t> first_, last_;  // columns of a row between which it is not 0
     std::vector<std::size_t> envelope_;      // likewise of the factor, the first one
-    std::vector<double> right_, lambda_, part_;
+    std::vector<double> right_, lambda_, part_, start_;
     std::vector<double> inverse_;  // of the factor's diagonal
     std::vector<Kind> kind_;
     std::vector<std::uint8_t> pushes_;         // or holds
+    std::vector<std::uint8_t> barred_;         // rows that are not to push again at once
     std::vector<std::size_t> chosen_, wrong_;  // rows that push; rows whose lambda or w has the wrong sign
     std::vector<std::size_t> factorised_;      // rows of the factor
 };
