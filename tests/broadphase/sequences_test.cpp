@@ -103,6 +103,12 @@ struct Subject {
 
 const std::vector<Subject>& subjects() {
     static const std::vector<Subject> subjects{
+        {"kd_tree", {}},
+        {"kd_tree", {{"leaf_size", {std::int64_t{1}, {}}}}},
+        {"octree", {}},
+        {"octree", {{"looseness", {1.0, {}}}}},
+        {"quadtree", {}},
+        {"quadtree", {{"up", {std::string("x"), {}}}}},
         {"regions", {}},
         {"sweep_and_prune", {{"method", {std::string("scratch"), {}}}}},
         {"sweep_and_prune", {{"method", {std::string("incremental"), {}}}}},
