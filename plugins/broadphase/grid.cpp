@@ -72,6 +72,25 @@ struct alignas(16) Item {
     }
 };
 
+// Pairs on their way to whoever asked: finding them and judging them take turns, so that neither has to guess what the
+// other will do.
+struct Found {
+    struct Candidate {
+        std::uint32_t a, b;
+        bool certain;
+    };
+    static constexpr std::uint32_t capacity = 256;
+    std::uint32_t count = 0;
+    Candidate candidates[capacity + 1];
+
+    template <class Hit>
+    void empty_into(Hit&& hit) {
+        for (std::uint32_t i = 0; i < count; ++i)
+            if (candidates[i].b != none) hit(candidates[i].a, candidates[i].b, candidates[i].certain);
+        count = 0;
+    }
+};
+
 // The cells of a level are numbered x + row y + layer z from its first one, modulo their number.
 struct Level {
     double longest = 0;      // size, see Cells::size_of
@@ -110,7 +129,7 @@ public:
         levels_.reserve(max_levels);
         slots_.reserve(2 * slots_per_box * boxes + 125 * max_levels);
         unsorted_.reserve(boxes);
-        items_.reserve(boxes);
+        items_.reserve(boxes + 3);
         where_.reserve(boxes);
         slot_.reserve(boxes);
     }
@@ -128,8 +147,6 @@ public:
 
     // Forgets that boxes were found crowded in large cells.
     void forget() { crowded_ = false; }
-
-    std::size_t size() const { return items_.size(); }
 
     // The i-th box of build() has moved. False if it is not in its cell any more; it is then taken out.
     bool move(std::uint32_t i, const Aabb& box) {
@@ -150,31 +167,38 @@ public:
     // Calls hit(a, b, certain) for every two boxes that may overlap, once; they do if it is certain.
     template <class Hit>
     void for_all(std::span<const Aabb> bounds, Hit&& hit) const {
+        Found found;
         for (const Level& level : levels_)
             for (std::uint32_t slot = 0; slot < level.slots; ++slot) {
                 const std::uint32_t* const slots = slots_.data() + level.first_slot + slot;
-                for (std::uint32_t i = slots[0]; i < slots[1]; ++i) look_onwards(level, slot, i, hit);
+                for (std::uint32_t i = slots[0]; i < slots[1]; ++i) look_onwards(level, slot, i, found, hit);
             }
-        if (levels_.size() == 1) return;
         for (std::size_t own = 1; own < levels_.size(); ++own)
             for (std::uint32_t i = slots_[levels_[own].first_slot]; i < end_of(levels_[own]); ++i) {
-                const UnitBox box = units(bounds[items_[i].row]);
-                for (std::size_t coarse = 0; coarse < own; ++coarse)
-                    look_around(levels_[coarse], box,
-                                [&](std::uint32_t other, bool certain) { hit(items_[i].row, other, certain); });
+                const std::uint32_t row = items_[i].row;
+                const UnitBox box = units(bounds[row]);
+                for (std::size_t coarse = 0; coarse < own; ++coarse) look_around(levels_[coarse], row, box, found, hit);
             }
+        found.empty_into(hit);
     }
 
-    // Calls hit(b, certain) for every box that may overlap this one, perhaps itself.
+    // Calls visit(row) in the order of the cells.
+    template <class Visit>
+    void for_each(Visit&& visit) const {
+        for (std::size_t i = 0; i < where_.size(); ++i)
+            if (items_[i].row != none) visit(items_[i].row);
+    }
+
+    // Calls hit(row, b, certain) for every box b that may overlap this one, perhaps itself.
     template <class Hit>
-    void for_box(const Aabb& box, Hit&& hit) const {
+    void for_box(std::uint32_t row, const Aabb& box, Found& found, Hit&& hit) const {
         const UnitBox finest = units(box);
         const double size = size_of(box);
         for (const Level& level : levels_)
             if (size <= level.longest)
-                look_around(level, finest, hit);
+                look_around(level, row, finest, found, hit);
             else
-                look_inside(level, finest, hit);
+                look_inside(level, row, finest, hit);
     }
 
     // About how many cells for_box looks at in finer levels.
@@ -376,7 +400,7 @@ private:
     void sort() {
         std::uint32_t end = 0;
         for (std::uint32_t& slot : slots_) slot = end += slot;
-        items_.resize(unsorted_.size());
+        items_.resize(unsorted_.size() + 3);  // tested by fours
         where_.resize(unsorted_.size());
         for (std::size_t i = unsorted_.size(); i-- > 0;) {
             where_[i] = --slots_[slot_[i]];
@@ -386,21 +410,23 @@ private:
 
     // Those after an item in its own cell, and in the cells after it that it reaches.
     template <class Hit>
-    void look_onwards(const Level& level, std::uint32_t slot, std::uint32_t i, Hit&& hit) const {
+    void look_onwards(const Level& level, std::uint32_t slot, std::uint32_t i, Found& found, Hit&& hit) const {
         const Item& item = items_[i];
         const __m128i probe = item.probe();
-        const auto hit_row = [&](std::uint32_t other, bool certain) { hit(item.row, other, certain); };
-        std::int32_t low[3], high[3];
+        std::uint32_t low[3], high[3];  // cells below it and above it
         for (int axis = 0; axis < 3; ++axis) {
-            low[axis] = item.in_cell(axis) < level.reach ? -1 : 0;
-            high[axis] = (item.in_cell(axis) + item.length(axis)) >> cell_bits;
+            low[axis] = item.in_cell(axis) < level.reach;
+            high[axis] = static_cast<std::uint32_t>(item.in_cell(axis) + item.length(axis)) >> cell_bits;
         }
-        test(level, probe, i + 1, slots_[level.first_slot + slot + 1], hit_row);
-        if (high[0] > 0) test_slots(level, probe, slot + 1, 1, hit_row);
-        const auto count = static_cast<std::uint32_t>(high[0] - low[0] + 1);
-        for (std::int32_t z = 0; z <= high[2]; ++z)
-            for (std::int32_t y = z == 0 ? 1 : low[1]; y <= high[1]; ++y)
-                test_slots(level, probe, slot + z * level.layer + y * level.row + low[0], count, hit_row);
+        test(level, item.row, probe, i + 1, slots_[level.first_slot + slot + 1], found, hit);
+        if (high[0] > 0) test_slots(level, item.row, probe, slot + 1, 1, found, hit);
+        std::uint32_t rows[4], count = 0;
+        rows[count] = slot + level.row, count += high[1];
+        rows[count] = slot + level.layer - level.row, count += high[2] & low[1];
+        rows[count] = slot + level.layer, count += high[2];
+        rows[count] = slot + level.layer + level.row, count += high[2] & high[1];
+        for (std::uint32_t k = 0; k < count; ++k)
+            test_slots(level, item.row, probe, rows[k] - low[0], 1 + low[0] + high[0], found, hit);
     }
 
     // The cells with the min corners of all boxes that may overlap this one.
@@ -415,7 +441,7 @@ private:
 
     // In a level whose boxes may be as large as this one.
     template <class Hit>
-    void look_around(const Level& level, const UnitBox& finest, Hit&& hit) const {
+    void look_around(const Level& level, std::uint32_t row, const UnitBox& finest, Found& found, Hit&& hit) const {
         const UnitBox box = finest.coarser(level.bits);
         const auto [first, last] = range(level, box);
         if (first[0] > last[0]) return;
@@ -423,15 +449,15 @@ private:
         const auto count = static_cast<std::uint32_t>(last[0] - first[0] + 1);
         for (std::int64_t z = first[2]; z <= last[2]; ++z)
             for (std::int64_t y = first[1]; y <= last[1]; ++y)
-                test_slots(level, probe, level.slot(first[0], y, z), count, hit);
+                test_slots(level, row, probe, level.slot(first[0], y, z), count, found, hit);
     }
 
     // In a finer level: 16 bits may not do, and most boxes of these cells do overlap this one.
     template <class Hit>
-    void look_inside(const Level& level, const UnitBox& finest, Hit&& hit) const {
+    void look_inside(const Level& level, std::uint32_t row, const UnitBox& finest, Hit&& hit) const {
         const auto report = [&](std::uint32_t begin, std::uint32_t end) {
             for (std::uint32_t i = begin; i < end; ++i)
-                if (items_[i].row != none) hit(items_[i].row, false);
+                if (items_[i].row != none) hit(row, items_[i].row, false);
         };
         if (level.folded) return report(slots_[level.first_slot], end_of(level));
         const auto [first, last] = range(level, finest.coarser(level.bits));
@@ -444,23 +470,32 @@ private:
 
     // Up to three slots in a row, which may begin or end beyond the last one.
     template <class Hit>
-    void test_slots(const Level& level, __m128i probe, std::uint32_t first, std::uint32_t count, Hit&& hit) const {
+    void test_slots(const Level& level, std::uint32_t row, __m128i probe, std::uint32_t first, std::uint32_t count,
+                    Found& found, Hit&& hit) const {
         const std::uint32_t* const slots = slots_.data() + level.first_slot;
-        if (first + count <= level.slots) return test(level, probe, slots[first], slots[first + count], hit);
+        if (first + count <= level.slots)
+            return test(level, row, probe, slots[first], slots[first + count], found, hit);
         for (std::uint32_t i = 0; i < count; ++i) {
             const std::uint32_t slot = (first + i) % level.slots;
-            test(level, probe, slots[slot], slots[slot + 1], hit);
+            test(level, row, probe, slots[slot], slots[slot + 1], found, hit);
         }
     }
 
+    // Items are tested by fours, because how many there are cannot be predicted.
     template <class Hit>
-    void test(const Level& level, __m128i probe, std::uint32_t begin, std::uint32_t end, Hit&& hit) const {
-        constexpr int high_bytes = 0xaaa, all_bytes = 0xfff;  // of the six differences
-        for (std::uint32_t i = begin; i < end; ++i) {
-            const __m128i depth = _mm_sub_epi16(probe, items_[i].load());
-            if ((_mm_movemask_epi8(depth) & high_bytes) != 0 || items_[i].row == none) continue;
-            const __m128i touching = _mm_cmpeq_epi16(depth, _mm_setzero_si128());
-            hit(items_[i].row, !level.folded && (_mm_movemask_epi8(touching) & all_bytes) == 0);
+    void test(const Level& level, std::uint32_t row, __m128i probe, std::uint32_t begin, std::uint32_t end,
+              Found& found, Hit&& hit) const {
+        constexpr int apart = 0x3f, touching = 0x3f00;  // six differences each
+        constexpr std::uint32_t step = 4;
+        for (std::uint32_t i = begin; i < end; i += step) {
+            if (found.count > Found::capacity - step) found.empty_into(hit);
+            for (std::uint32_t k = i; k < i + step; ++k) {
+                const __m128i depth = _mm_sub_epi16(probe, items_[k].load());
+                const int marks =
+                    _mm_movemask_epi8(_mm_packs_epi16(depth, _mm_cmpeq_epi16(depth, _mm_setzero_si128())));
+                found.candidates[found.count] = {row, items_[k].row, !level.folded && (marks & touching) == 0};
+                found.count += (k < end) & ((marks & apart) == 0);
+            }
         }
     }
 
@@ -597,6 +632,16 @@ private:
         });
     }
 
+    // In the order of the cells, so that one finds in the cache what the one before has looked at.
+    void sort_moved() {
+        moved_.clear();
+        const auto add = [&](std::uint32_t row) {
+            if (is_moved_[row]) moved_.push_back(row);
+        };
+        cells_.for_each(add);
+        for (const std::uint32_t row : strayed_) add(row);
+    }
+
     void find_pairs_of_moved(std::span<const Aabb> bounds) {
         for (const std::uint32_t row : moved_) is_moved_[row] = 1;
         std::size_t kept = 0;
@@ -605,14 +650,20 @@ private:
             kept += !(is_moved_[pair.a] | is_moved_[pair.b]);
         }
         pairs_.resize(kept);
-        for (const std::uint32_t a : moved_) {
-            const auto hit = [&](std::uint32_t b, bool certain) {
-                if (b == a || (is_moved_[b] && b < a)) return;
-                if (certain || bounds[a].overlaps(bounds[b])) pairs_.push_back({std::min(a, b), std::max(a, b)});
-            };
-            cells_.for_box(bounds[a], hit);
-            if (!strayed_.empty()) cells_of_strayed_.for_box(bounds[a], hit);
+        const auto hit = [&](std::uint32_t a, std::uint32_t b, bool certain) {
+            if (b == a || (is_moved_[b] && b < a)) return;
+            if (certain || bounds[a].overlaps(bounds[b])) pairs_.push_back({std::min(a, b), std::max(a, b)});
+        };
+        sort_moved();
+        Found found;
+        for (std::size_t i = 0; i < moved_.size(); ++i) {
+            const std::uint32_t row = moved_[i];
+            constexpr std::size_t ahead = 8;
+            if (i + ahead < moved_.size()) __builtin_prefetch(&bounds[moved_[i + ahead]]);
+            cells_.for_box(row, bounds[row], found, hit);
+            if (!strayed_.empty()) cells_of_strayed_.for_box(row, bounds[row], found, hit);
         }
+        found.empty_into(hit);
         for (const std::uint32_t row : moved_) is_moved_[row] = 0;
     }
 
