@@ -1,8 +1,10 @@
 // Broadphase by sweep and prune: only boxes whose extents overlap along an axis can overlap.
 //
 // `scratch` sorts the boxes by where they begin along one axis, the one along which they are spread the most, and tests
-// each against those that begin before it ends, four at a time. Static boxes stand in a list of their own that is kept
-// while the generation stays, so that two static boxes never meet in a test.
+// each against those that begin before it ends, four at a time. Many boxes are first dealt out to tiles across the two
+// other axes, as large as a few boxes; a box goes to all tiles that it reaches into, and a pair is taken where the
+// lowest corner of what the two have in common lies. Static boxes stand in a list of their own that is kept while the
+// generation stays, so that two static boxes never meet in a test.
 //
 // `incremental` keeps three sorted lists of end points from step to step. Sorting them by insertion costs what has
 // changed places: where the begin of a box goes below the end of another, the two have come to overlap along that axis.
@@ -48,6 +50,18 @@ public:
     };
     std::vector<Item> items;
 
+    void reserve(std::size_t size) {
+        items.reserve(size);
+        other_.reserve(size);
+    }
+
+    void sort_any_order_of_equals() {
+        constexpr std::size_t few = 1024;  // radix sort has its price
+        if (items.size() > few) return sort();
+        std::sort(items.begin(), items.end(),
+                  [](const Item& a, const Item& b) { return a.key != b.key ? a.key < b.key : a.id < b.id; });
+    }
+
     void sort() {
         for (auto& histogram : counts_) histogram.fill(0);
         for (const Item& item : items)
@@ -63,7 +77,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t bits = 8, passes = 8;
+    static constexpr std::size_t bits = 11, passes = 6;
     static std::size_t digit(const Item& item, std::size_t pass) {
         return item.key >> (pass * bits) & ((std::size_t{1} << bits) - 1);
     }
@@ -71,31 +85,139 @@ private:
     std::array<std::array<std::uint32_t, std::size_t{1} << bits>, passes> counts_;
 };
 
-// Boxes by ascending low[0]; the axis of the sweep is axis 0 here. Behind the last one stand boxes that begin nowhere.
+// Space across the axis of the sweep, divided along axes 1 and 2 as seen from it. What lies outside belongs to the
+// outermost tiles.
+struct Tiles {
+    struct Axis {
+        double origin = 0, per_metre = 0;
+        std::uint32_t count = 1;
+
+        std::uint32_t index(double x) const {
+            const double i = (x - origin) * per_metre;
+            return count == 1 || !(i > 0) ? 0 : i >= count ? count - 1 : static_cast<std::uint32_t>(i);
+        }
+        // A little more or less wide: it is not worth sorting everything again.
+        bool is_like(const Axis& o) const {
+            const auto near = [](double x, double y) { return x <= 1.5 * y && y <= 1.5 * x; };
+            return count == 1 ? o.count == 1
+                              : near(per_metre, o.per_metre) && near(count, o.count) &&
+                                    std::abs(origin - o.origin) * per_metre <= 0.25 * count;
+        }
+    };
+    Axis axis[2];
+
+    std::uint32_t count() const { return axis[0].count * axis[1].count; }
+    bool are_like(const Tiles& o) const { return axis[0].is_like(o.axis[0]) && axis[1].is_like(o.axis[1]); }
+};
+
+// A box as it is filed in a tile; the axis of the sweep is axis 0 here.
+struct Entry {
+    double low[3], high[3];
+    std::uint32_t row;
+    std::uint16_t first_tile[2];  // along axes 1 and 2
+
+    Entry() = default;
+    Entry(const Aabb& box, std::uint32_t r, int sweep_axis) : row(r) {
+        for (int k = 0; k < 3; ++k) {
+            low[k] = box.min[(sweep_axis + k) % 3];
+            high[k] = box.max[(sweep_axis + k) % 3];
+        }
+    }
+    // Calls visit(number) for all tiles that it reaches into.
+    template <class Visit>
+    void for_tiles(const Tiles& tiles, Visit&& visit) {
+        std::uint32_t last[2];
+        for (int k = 0; k < 2; ++k) {
+            first_tile[k] = static_cast<std::uint16_t>(tiles.axis[k].index(low[k + 1]));
+            last[k] = tiles.axis[k].index(high[k + 1]);
+        }
+        for (std::uint32_t y = first_tile[0]; y <= last[0]; ++y)
+            for (std::uint32_t z = first_tile[1]; z <= last[1]; ++z) visit(y * tiles.axis[1].count + z);
+    }
+};
+
+// The entries of all tiles, tile by tile.
+struct Files {
+    std::vector<Entry> entries;
+    std::vector<std::uint32_t> begin;  // by tile; one more for the end
+
+    void file(const kolize::BroadphaseInput& input, bool is_static, int sweep_axis, const Tiles& tiles) {
+        begin.assign(tiles.count() + 2, 0);
+        const auto for_rows = [&](auto&& visit) {
+            for (std::uint32_t row = 0; row < input.bounds.size(); ++row)
+                if ((input.is_static[row] != 0) == is_static) {
+                    Entry entry(input.bounds[row], row, sweep_axis);
+                    entry.for_tiles(tiles, [&](std::uint32_t tile) { visit(entry, tile); });
+                }
+        };
+        for_rows([&](const Entry&, std::uint32_t tile) { ++begin[tile + 2]; });
+        for (std::size_t t = 2; t < begin.size(); ++t) begin[t] += begin[t - 1];
+        entries.resize(begin.back());
+        for_rows([&](const Entry& entry, std::uint32_t tile) { entries[begin[tile + 1]++] = entry; });
+        begin.pop_back();
+    }
+    std::span<const Entry> of_tile(std::uint32_t tile) const {
+        return std::span(entries).subspan(begin[tile], begin[tile + 1] - begin[tile]);
+    }
+};
+
+// The boxes of one tile after the other, in each by ascending low[0]. Behind the last one of a tile stand boxes that
+// begin nowhere.
 struct SortedBoxes {
     std::vector<double> low[3], high[3];
     std::vector<std::uint32_t> row;
+    std::vector<std::array<std::uint16_t, 2>> first_tile;
 
-    void take(const std::vector<KeySort::Item>& order, std::span<const Aabb> bounds, int sweep_axis) {
-        row.resize(order.size());
-        for (std::size_t i = 0; i < order.size(); ++i) row[i] = order[i].id;
-        for (int k = 0; k < 3; ++k) {
-            const int axis = (sweep_axis + k) % 3;
-            low[k].assign(order.size() + lanes, kolize::infinity);
-            high[k].assign(order.size() + lanes, -kolize::infinity);
-            for (std::size_t i = 0; i < order.size(); ++i) {
-                low[k][i] = bounds[row[i]].min[axis];
-                high[k][i] = bounds[row[i]].max[axis];
-            }
-        }
+    std::size_t size() const { return row.size(); }
+    void reserve(std::size_t size) {
+        for (int k = 0; k < 3; ++k) low[k].reserve(size), high[k].reserve(size);
+        row.reserve(size);
+        first_tile.reserve(size);
+    }
+    void clear() { resize(0); }
+
+    void add(std::span<const Entry> entries, KeySort& sort) {
+        sort.items.clear();
+        for (std::uint32_t i = 0; i < entries.size(); ++i) sort.items.push_back({sort_key(entries[i].low[0]), i});
+        sort.sort_any_order_of_equals();
+        std::size_t i = size();
+        resize(i + entries.size() + lanes);
+        for (const KeySort::Item& item : sort.items) set(i++, entries[item.id]);
+        for (; i < size(); ++i) set(i, nowhere());
+    }
+
+private:
+    static Entry nowhere() {
+        Entry entry;
+        for (int k = 0; k < 3; ++k) entry.low[k] = kolize::infinity, entry.high[k] = -kolize::infinity;
+        entry.row = 0;
+        entry.first_tile[0] = entry.first_tile[1] = 0;
+        return entry;
+    }
+    void resize(std::size_t size) {
+        for (int k = 0; k < 3; ++k) low[k].resize(size), high[k].resize(size);
+        row.resize(size);
+        first_tile.resize(size);
+    }
+    void set(std::size_t i, const Entry& entry) {
+        for (int k = 0; k < 3; ++k) low[k][i] = entry.low[k], high[k][i] = entry.high[k];
+        row[i] = entry.row;
+        first_tile[i] = {entry.first_tile[0], entry.first_tile[1]};
     }
 };
 
 const Lanes& load(const double* four) { return *reinterpret_cast<const Lanes*>(four); }
 
+struct Tile {
+    std::uint32_t y, z;
+    bool owns(const std::array<std::uint16_t, 2>& a, const std::array<std::uint16_t, 2>& b) const {
+        return std::max(a[0], b[0]) == y && std::max(a[1], b[1]) == z;
+    }
+};
+
 // Box i of `a` against those of `b` from number `begin` on, as far as they begin before it ends.
-[[gnu::always_inline]] inline void scan(const SortedBoxes& a, std::size_t i, const SortedBoxes& b, std::size_t begin,
-                                        std::vector<Pair>& pairs) {
+[[gnu::always_inline]] inline void scan(const Tile& tile, const SortedBoxes& a, std::size_t i, const SortedBoxes& b,
+                                        std::size_t begin, std::vector<Pair>& pairs) {
     const double end = a.high[0][i];
     const double low1 = a.low[1][i], high1 = a.high[1][i], low2 = a.low[2][i], high2 = a.high[2][i];
     for (std::size_t j = begin; b.low[0][j] <= end; j += lanes) {
@@ -103,25 +225,28 @@ const Lanes& load(const double* four) { return *reinterpret_cast<const Lanes*>(f
                          (load(&b.high[2][j]) >= low2) & (load(&b.low[0][j]) <= end);
         if ((hit[0] | hit[1] | hit[2] | hit[3]) == 0) continue;
         for (std::size_t k = 0; k < lanes; ++k)
-            if (hit[k]) pairs.push_back({std::min(a.row[i], b.row[j + k]), std::max(a.row[i], b.row[j + k])});
+            if (hit[k] && tile.owns(a.first_tile[i], b.first_tile[j + k]))
+                pairs.push_back({std::min(a.row[i], b.row[j + k]), std::max(a.row[i], b.row[j + k])});
     }
 }
 
-KOLIZE_WIDE void sweep(const SortedBoxes& boxes, std::vector<Pair>& pairs) {
-    for (std::size_t i = 0; i < boxes.row.size(); ++i) scan(boxes, i, boxes, i + 1, pairs);
+KOLIZE_WIDE void sweep(const Tile& tile, const SortedBoxes& boxes, std::size_t begin, std::size_t end,
+                       std::vector<Pair>& pairs) {
+    for (std::size_t i = begin; i < end; ++i) scan(tile, boxes, i, boxes, i + 1, pairs);
 }
 
 // Each box against those of the other list that begin with it or later; if two begin together, `a` goes first.
-KOLIZE_WIDE void sweep(const SortedBoxes& a, const SortedBoxes& b, std::vector<Pair>& pairs) {
-    std::size_t begin = 0;
-    for (std::size_t i = 0; i < a.row.size(); ++i) {
+KOLIZE_WIDE void sweep(const Tile& tile, const SortedBoxes& a, std::size_t begin_a, std::size_t end_a,
+                       const SortedBoxes& b, std::size_t begin_b, std::size_t end_b, std::vector<Pair>& pairs) {
+    std::size_t begin = begin_b;
+    for (std::size_t i = begin_a; i < end_a; ++i) {
         while (b.low[0][begin] < a.low[0][i]) ++begin;
-        scan(a, i, b, begin, pairs);
+        scan(tile, a, i, b, begin, pairs);
     }
-    begin = 0;
-    for (std::size_t i = 0; i < b.row.size(); ++i) {
-        while (begin < a.row.size() && a.low[0][begin] <= b.low[0][i]) ++begin;
-        scan(b, i, a, begin, pairs);
+    begin = begin_a;
+    for (std::size_t i = begin_b; i < end_b; ++i) {
+        while (begin < end_a && a.low[0][begin] <= b.low[0][i]) ++begin;
+        scan(tile, b, i, a, begin, pairs);
     }
 }
 
@@ -132,8 +257,7 @@ public:
             .choices({"scratch", "incremental"})
             .doc(
                 "scratch: sorts and sweeps along one axis in every step. incremental: keeps sorted end points and "
-                "pairs, "
-                "for scenes in which little moves from step to step.");
+                "pairs.");
     }
 
     void find_pairs(const kolize::BroadphaseInput& input, std::vector<Pair>& pairs) override {
@@ -141,7 +265,15 @@ public:
         const bool anew = input.generation != generation_ || input.bounds.size() != rows_;
         generation_ = input.generation;
         rows_ = input.bounds.size();
-        if (anew) axis_ = -1;
+        if (anew) {
+            axis_ = -1;
+            sort_.reserve(rows_);
+            files_.entries.reserve(2 * rows_);
+            files_.begin.reserve(rows_ + 2);
+            moving_boxes_.reserve(rows_ + lanes);
+            static_boxes_.reserve(2 * rows_ + lanes);
+            static_begin_.reserve(rows_ + 2);
+        }
         if (method_ == "scratch") return sweep_all(input, pairs);
         if (anew || !keep_up(input)) begin_anew(input);
         previous_.assign(input.bounds.begin(), input.bounds.end());
@@ -153,11 +285,55 @@ private:
 
     void sweep_all(const kolize::BroadphaseInput& input, std::vector<Pair>& pairs) {
         const int axis = choose_axis(input.bounds);
-        if (axis != axis_) sort_boxes(input, axis, true, static_boxes_);
-        axis_ = axis;
-        sort_boxes(input, axis, false, moving_boxes_);
-        sweep(moving_boxes_, pairs);
-        sweep(moving_boxes_, static_boxes_, pairs);
+        const Tiles tiles = choose_tiles(input.bounds, axis);
+        if (axis != axis_ || !tiles.are_like(tiles_)) {
+            axis_ = axis;
+            tiles_ = tiles;
+            sort_static_boxes(input);
+        }
+        files_.file(input, false, axis_, tiles_);
+        for (std::uint32_t t = 0; t < tiles_.count(); ++t) {
+            const std::span<const Entry> entries = files_.of_tile(t);
+            if (entries.empty()) continue;
+            const Tile tile{t / tiles_.axis[1].count, t % tiles_.axis[1].count};
+            moving_boxes_.clear();
+            moving_boxes_.add(entries, sort_);
+            sweep(tile, moving_boxes_, 0, entries.size(), pairs);
+            const std::size_t begin = static_begin_[t], end = static_begin_[t + 1] - lanes;
+            if (begin < end) sweep(tile, moving_boxes_, 0, entries.size(), static_boxes_, begin, end, pairs);
+        }
+    }
+
+    void sort_static_boxes(const kolize::BroadphaseInput& input) {
+        files_.file(input, true, axis_, tiles_);
+        static_boxes_.clear();
+        static_begin_.assign(1, 0);
+        for (std::uint32_t t = 0; t < tiles_.count(); ++t) {
+            static_boxes_.add(files_.of_tile(t), sort_);
+            static_begin_.push_back(static_boxes_.size());
+        }
+    }
+
+    // Three times as wide as a box in the root mean square, so that even a few huge ones do not stand in many tiles;
+    // and not more of them than there are boxes to fill them.
+    Tiles choose_tiles(std::span<const Aabb> bounds, int sweep_axis) const {
+        constexpr double widths = 3, boxes_in_a_tile = 16;
+        constexpr std::size_t samples = 64;
+        Tiles tiles;
+        const auto rows = static_cast<double>(bounds.size());
+        const double most = std::floor(std::sqrt(rows / boxes_in_a_tile));
+        for (int k = 0; k < 2 && most >= 2; ++k) {
+            const int axis = (sweep_axis + k + 1) % 3;
+            double squares = 0, sample[samples];
+            for (const Aabb& box : bounds) squares += (box.max[axis] - box.min[axis]) * (box.max[axis] - box.min[axis]);
+            for (std::size_t i = 0; i < samples; ++i) sample[i] = bounds[i * bounds.size() / samples].min[axis];
+            std::sort(sample, sample + samples);
+            const double origin = sample[1], range = sample[samples - 2] - origin;
+            const double width = std::max(widths * std::sqrt(squares / rows), range / most);
+            if (!(width > 0 && range < kolize::infinity && range >= 2 * width)) continue;
+            tiles.axis[k] = {origin, 1 / width, static_cast<std::uint32_t>(std::min(range / width, most))};
+        }
+        return tiles;
     }
 
     // The axis along which the centres vary most, judged by some of them. One that was chosen before is kept until
@@ -181,15 +357,6 @@ private:
         int best = 0;
         variance.maxCoeff(&best);
         return axis_ >= 0 && 2 * variance[axis_] >= variance[best] ? axis_ : best;
-    }
-
-    void sort_boxes(const kolize::BroadphaseInput& input, int axis, bool is_static, SortedBoxes& boxes) {
-        sort_.items.clear();
-        for (std::uint32_t row = 0; row < input.bounds.size(); ++row)
-            if ((input.is_static[row] != 0) == is_static)
-                sort_.items.push_back({sort_key(input.bounds[row].min[axis]), row});
-        sort_.sort();
-        boxes.take(sort_.items, input.bounds, axis);
     }
 
     // -------------------------------------------------------------------------------------- incremental
@@ -267,8 +434,12 @@ private:
     std::uint64_t generation_ = 0;
     std::size_t rows_ = 0;
     int axis_ = -1;  // of the sweep; -1: the static boxes are not sorted yet
+    Tiles tiles_;
     KeySort sort_;
-    SortedBoxes moving_boxes_, static_boxes_;
+    Files files_;
+    SortedBoxes moving_boxes_;  // of one tile
+    SortedBoxes static_boxes_;  // of all tiles
+    std::vector<std::size_t> static_begin_;
     std::vector<EndPoint> ends_[3];
     std::vector<Aabb> previous_;     // the boxes of the last step
     std::vector<Pair> overlapping_;  // and its pairs
@@ -276,18 +447,21 @@ private:
 
 }  // namespace
 
-KOLIZE_PLUGIN(SweepAndPrune, .name = "sweep_and_prune",
-              .summary = "boxes sorted along an axis; only those whose extents overlap are tested",
-              .source =
-                  "Baraff, Dynamic Simulation of Non-penetrating Rigid Bodies (1992), 3.1; Cohen et al., I-COLLIDE, "
-                  "I3D 1995",
-              .cost =
-                  "scratch: O(N) to sort, then a quarter of a comparison for each two moving boxes whose extents "
-                  "overlap along one axis: O(N^(5/3)) in an evenly filled cube. incremental: O(N + pairs) and the "
-                  "number of end points that change places; two to six times as long as scratch where everything "
-                  "moves. About 90 bytes a box, incremental 240 and 8 a pair.",
-              .accuracy = "Exact: a pair is reported if and only if its closed boxes overlap.",
-              .choose =
-                  "Up to some thousand boxes, or boxes strung out along one axis. incremental pays if hardly "
-                  "anything moves from step to step; for many boxes that fill space evenly take grid.",
-              .capabilities = {.exact = true})
+KOLIZE_PLUGIN(
+    SweepAndPrune, .name = "sweep_and_prune",
+    .summary = "boxes sorted along an axis; only those whose extents overlap are tested",
+    .source =
+        "Baraff, Dynamic Simulation of Non-penetrating Rigid Bodies (1992), 3.1; Cohen et al., I-COLLIDE, "
+        "I3D 1995",
+    .cost =
+        "scratch: O(N log N) to sort, and a quarter of a comparison for each two boxes of a tile whose extents "
+        "overlap along the axis: about as many as there are pairs where boxes fill space, O(N^2) where all lie "
+        "in a row of their own width. incremental: O(N + pairs) and the number of end points that change "
+        "places; longer than scratch where everything moves. About 150 bytes a box, incremental 300 and 8 a "
+        "pair.",
+    .accuracy = "Exact: a pair is reported if and only if its closed boxes overlap.",
+    .choose =
+        "Boxes of very different sizes, at any number, and all of them moving; some thousand boxes of any "
+        "kind. incremental pays if hardly anything moves from step to step. For many boxes of similar size "
+        "take grid.",
+    .capabilities = {.exact = true})
