@@ -64,6 +64,7 @@ public:
         }
         nodes_.clear();
         stale_.clear();
+        surface_ = 0;
         add_node(space.whole(whole), none, 0);
         for (const std::uint32_t row : rows) link(row, 0);
         for (std::uint32_t node = 0; node < nodes_.size(); ++node)
@@ -88,6 +89,9 @@ public:
         return moved;
     }
 
+    // Sum over the nodes of how likely a box is to meet them: a measure of what searching costs. m^2; it may overflow.
+    double surface() const { return surface_; }
+
     bool holds(const Aabb& box) const { return space_->holds(nodes_[0].cell, box); }
 
     // Calls visit(row) for each row whose box overlaps the given one.
@@ -102,9 +106,54 @@ public:
         for (std::uint32_t i = 0; i < Space::children; ++i) search(box, visit, node.first_child + i);
     }
 
+    // Calls visit(row, row) once for every two rows whose boxes overlap.
+    template <class Visit>
+    void search_all(Visit&& visit, std::uint32_t from = 0) const {
+        const Node& node = nodes_[from];
+        for (std::uint32_t a = node.first_row; a != none; a = next_[a])
+            for (std::uint32_t b = next_[a]; b != none; b = next_[b])
+                if (bounds_[a].overlaps(bounds_[b])) visit(a, b);
+        if (node.first_child == none) return;
+        for (std::uint32_t i = 0; i < Space::children; ++i) {
+            search_own(node, node.first_child + i, visit);
+            search_all(visit, node.first_child + i);
+            for (std::uint32_t j = i + 1; j < Space::children; ++j)
+                search_between(node.first_child + i, node.first_child + j, visit);
+        }
+    }
+
     const std::vector<Node>& nodes() const { return nodes_; }
 
 private:
+    // The boxes below one node against those below the other one.
+    template <class Visit>
+    void search_between(std::uint32_t a, std::uint32_t b, Visit&& visit) const {
+        const Node &x = nodes_[a], &y = nodes_[b];
+        if (!x.below.overlaps(y.below)) return;
+        search_own(x, b, visit);
+        if (x.first_child == none) return;
+        for (std::uint32_t i = 0; i < Space::children; ++i) {
+            search_own(y, x.first_child + i, visit);
+            for (std::uint32_t j = 0; y.first_child != none && j < Space::children; ++j)
+                search_between(x.first_child + i, y.first_child + j, visit);
+        }
+    }
+
+    // A node's own boxes against all below another one.
+    template <class Visit>
+    void search_own(const Node& node, std::uint32_t from, Visit&& visit) const {
+        const Node& other = nodes_[from];
+        if (!node.own.overlaps(other.below)) return;
+        if (node.own.overlaps(other.own))
+            for (std::uint32_t a = node.first_row; a != none; a = next_[a]) {
+                if (!bounds_[a].overlaps(other.own)) continue;
+                for (std::uint32_t b = other.first_row; b != none; b = next_[b])
+                    if (bounds_[a].overlaps(bounds_[b])) visit(a, b);
+            }
+        if (other.first_child == none) return;
+        for (std::uint32_t i = 0; i < Space::children; ++i) search_own(node, other.first_child + i, visit);
+    }
+
     void add_node(const Cell& cell, std::uint32_t parent, std::uint32_t level) {
         Node& node = nodes_.emplace_back();
         node.cell = cell;
@@ -183,13 +232,21 @@ private:
         for (const std::uint32_t number : stale_) {
             Node& node = nodes_[number];
             node.stale = false;
+            surface_ -= surface_of(node.below);
             node.own = Aabb{};
             for (std::uint32_t row = node.first_row; row != none; row = next_[row]) include(node.own, bounds_[row]);
             node.below = node.own;
             for (std::uint32_t i = 0; node.first_child != none && i < Space::children; ++i)
                 include(node.below, nodes_[node.first_child + i].below);
+            surface_ += surface_of(node.below);
         }
         stale_.clear();
+    }
+
+    static double surface_of(const Aabb& box) {
+        if (!box.finite()) return 0;
+        const Vec3 side = box.max - box.min;
+        return side.x() * side.y() + side.y() * side.z() + side.z() * side.x();
     }
 
     static void include(Aabb& bounds, const Aabb& box) {
@@ -202,6 +259,7 @@ private:
     std::vector<Node> nodes_;
     std::vector<std::uint32_t> next_, previous_, node_;  // by row
     std::vector<std::uint32_t> stale_;
+    double surface_ = 0;
 };
 
 template <class Space>
@@ -213,7 +271,10 @@ public:
             begin_anew(input);
         else
             follow(input);
-        for (const std::uint32_t row : moved_) find_partners(row);
+        if (2 * moved_.size() > moving_rows_.size())
+            find_all_pairs();
+        else
+            for (const std::uint32_t row : moved_) find_partners(row);
         for (const std::uint32_t row : moved_) has_moved_[row] = 0;
         pairs.insert(pairs.end(), kept_.begin(), kept_.end());
     }
@@ -231,6 +292,7 @@ protected:
     Space space_;
     int leaf_size_ = 8;
     int max_depth_ = 24;
+    double rebuild_at_ = 2;
 
 private:
     void begin_anew(const BroadphaseInput& input) {
@@ -264,7 +326,7 @@ private:
         }
         if (moved_.empty()) return;
         refiled_ = held ? refiled_ + moving_.refile(boxes_, moved_) : moving_rows_.size();
-        if (refiled_ >= moving_rows_.size()) build_moving();
+        if (refiled_ >= moving_rows_.size() || moving_.surface() > rebuild_at_ * built_surface_) build_moving();
         std::erase_if(kept_, [this](const Pair& pair) { return has_moved_[pair.a] || has_moved_[pair.b]; });
     }
 
@@ -280,6 +342,17 @@ private:
     void build_moving() {
         build(moving_, moving_rows_);
         refiled_ = 0;
+        built_surface_ = moving_.surface();
+    }
+
+    // All at once costs less than one by one.
+    void find_all_pairs() {
+        kept_.clear();
+        const auto add = [this](std::uint32_t a, std::uint32_t b) {
+            kept_.push_back({std::min(a, b), std::max(a, b)});
+        };
+        for (const std::uint32_t a : moving_rows_) static_.search(boxes_[a], [&](std::uint32_t b) { add(a, b); });
+        moving_.search_all(add);
     }
 
     // Of two that have both moved the first one finds the pair.
@@ -297,7 +370,8 @@ private:
     std::vector<std::uint32_t> moved_;  // since the last call
     std::vector<std::uint8_t> has_moved_;
     BoxTree<Space> static_, moving_;
-    std::size_t refiled_ = 0;  // since the moving tree was built
+    std::size_t refiled_ = 0;   // since the moving tree was built
+    double built_surface_ = 0;  // of the moving tree then
     std::vector<Pair> kept_;
 };
 

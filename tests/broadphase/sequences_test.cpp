@@ -103,6 +103,8 @@ struct Subject {
 
 const std::vector<Subject>& subjects() {
     static const std::vector<Subject> subjects{
+        {"aabb_hierarchy", {}},
+        {"aabb_hierarchy", {{"rebuild_at", {1.0, {}}}}},
         {"kd_tree", {}},
         {"kd_tree", {{"leaf_size", {std::int64_t{1}, {}}}}},
         {"octree", {}},
