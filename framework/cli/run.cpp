@@ -56,6 +56,14 @@ void print_result(const RunResult& result) {
               << "\nstate hash " << hex(result.state_hash) << '\n';
 }
 
+// What the stages chose or found out.
+void print_reports(const Simulation& simulation) {
+    std::vector<EffectiveStage> stages = simulation.responses();
+    stages.insert(stages.begin(), {simulation.broadphase(), simulation.narrowphase()});
+    for (const EffectiveStage& stage : stages)
+        if (!stage.report.empty()) std::cout << stage.plugin << ": " << stage.report << '\n';
+}
+
 SceneOptions scene_options(const RunOptions& options) {
     Settings settings = parse_settings(options.set);
     if (options.ledger) settings.emplace_back("ledger.check", "true");
@@ -141,6 +149,7 @@ void write_result(const RunOptions& options, const Session& session) {
     const RunResult result = simulation.result();
     if (options.json != "-") {
         print_result(result);
+        print_reports(simulation);
         if (session.replays()) std::cout << replay_text(session) << '\n';
     }
     if (options.json.empty()) return;

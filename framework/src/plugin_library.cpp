@@ -106,6 +106,28 @@ std::string unknown_parameter(const LoadedPlugin& plugin, const std::string& nam
            (nearest.empty() ? "; its parameters: " + joined(names) : nearest);
 }
 
+// Copies what it needs of the library: stages outlive it.
+class OtherBroadphases final : public BroadphaseChoice {
+public:
+    OtherBroadphases(const std::vector<LoadedPlugin>& plugins, Host& host) : host_(host) {
+        for (const LoadedPlugin& plugin : plugins)
+            if (plugin.descriptor->stage == StageKind::broadphase && !plugin.descriptor->capabilities.chooses)
+                plugins_.push_back(plugin);
+    }
+    std::size_t size() const override { return plugins_.size(); }
+    const char* name(std::size_t i) const override { return plugins_[i].descriptor->name; }
+    std::shared_ptr<Broadphase> make(std::size_t i) const override {
+        StagePtr<Stage> stage = create(plugins_[i], {});
+        guarded(plugins_[i], {}, "refuses its parameters", [&] { stage->attach(host_); });
+        const auto destroy = stage.get_deleter();
+        return {static_cast<Broadphase*>(stage.release()), destroy};
+    }
+
+private:
+    std::vector<LoadedPlugin> plugins_;
+    Host& host_;
+};
+
 void apply(const LoadedPlugin& plugin, const std::string& name, const Setting& setting, Stage& stage) {
     const Parameter* parameter = plugin.parameters.find(name);
     if (!parameter) throw Error(setting.where, unknown_parameter(plugin, name));
@@ -181,6 +203,10 @@ StagePtr<Stage> PluginLibrary::make_stage(StageKind kind, const StageConfig& con
     StagePtr<Stage> stage = create(plugin, config.where);
     for (const auto& [name, setting] : config.settings) apply(plugin, name, setting, *stage);
     guarded(plugin, config.where, "refuses its parameters", [&] { stage->attach(host); });
+    if (auto* broadphase = dynamic_cast<Broadphase*>(stage.get());
+        broadphase && plugin.descriptor->capabilities.chooses)
+        guarded(plugin, config.where, "finds nothing to choose from",
+                [&] { broadphase->choose_from(std::make_shared<OtherBroadphases>(plugins_, host)); });
     return stage;
 }
 
