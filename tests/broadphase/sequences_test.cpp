@@ -105,6 +105,8 @@ const std::vector<Subject>& subjects() {
     static const std::vector<Subject> subjects{
         {"aabb_hierarchy", {}},
         {"aabb_hierarchy", {{"rebuild_at", {1.0, {}}}}},
+        {"auto", {}},
+        {"embree", {}},
         {"kd_tree", {}},
         {"kd_tree", {{"leaf_size", {std::int64_t{1}, {}}}}},
         {"octree", {}},
