@@ -8,5 +8,9 @@ namespace kolize {
 
 void check_metamorphic_broadphase(const PluginLibrary& library, const LoadedPlugin& plugin,
                                   const ConformanceOptions& options, Suite& suite);
+void check_metamorphic_narrowphase(const PluginLibrary& library, const LoadedPlugin& plugin,
+                                   const ConformanceOptions& options, Suite& suite);
+void check_metamorphic_response(const PluginLibrary& library, const LoadedPlugin& plugin,
+                                const ConformanceOptions& options, Suite& suite);
 
 }  // namespace kolize
