@@ -111,26 +111,23 @@ public:
             throw Violation("the same pairs have other contacts after calls about others");
     }
 
+    void gives_what_it_declares() const {
+        const World world = crowd();
+        for_each_setting(world, [&](const std::string& what, Narrowphase& stage) {
+            if (stage.gives() > capabilities().gives)
+                throw Violation(what + ": it gives " + to_string(stage.gives()) + ", and declares " +
+                                to_string(capabilities().gives));
+        });
+    }
+
     // Either it refuses, in a sentence, or what it gives is finite.
     void parameters() const {
         const World world = crowd();
-        for (const Parameter& parameter : plugin_.parameters.items)
-            for (const Value& value : values_to_try(parameter)) {
-                const std::string what = parameter.name + " = " + to_string(value);
-                const auto host = make_host(1);
-                StagePtr<Narrowphase> stage(nullptr, [](Stage*) {});
-                try {
-                    stage = make(*host, world, {{parameter.name, {value, {}}}});
-                } catch (const Error&) {
-                    continue;
-                }
-                if (stage->gives() > capabilities().gives)
-                    throw Violation(what + ": it gives " + to_string(stage->gives()) + ", and declares " +
-                                    to_string(capabilities().gives));
-                for (const Contact& c : find(*stage, world, all_pairs(world), stage->gives()).rows)
-                    if (!c.normal.allFinite() || !c.arm_a.allFinite() || !c.arm_b.allFinite() || !(c.depth >= 0))
-                        throw Violation(what + ": a contact is not finite");
-            }
+        for_each_setting(world, [&](const std::string& what, Narrowphase& stage) {
+            for (const Contact& c : find(stage, world, all_pairs(world), stage.gives()).rows)
+                if (!c.normal.allFinite() || !c.arm_a.allFinite() || !c.arm_b.allFinite() || !(c.depth >= 0))
+                    throw Violation(what + ": a contact is not finite");
+        });
     }
 
     // Where surfaces cross is on both of them; and where they are apart is nothing.
@@ -170,6 +167,23 @@ public:
     }
 
 private:
+    // The defaults, and each parameter at its ends and choices, the others at their defaults, as far as it takes them.
+    template <class CheckStage>
+    void for_each_setting(const World& world, CheckStage&& check) const {
+        const auto host = make_host(1);
+        check("the defaults", *make(*host, world));
+        for (const Parameter& parameter : plugin_.parameters.items)
+            for (const Value& value : values_to_try(parameter)) {
+                StagePtr<Narrowphase> stage(nullptr, [](Stage*) {});
+                try {
+                    stage = make(*host, world, {{parameter.name, {value, {}}}});
+                } catch (const Error&) {
+                    continue;
+                }
+                check(parameter.name + " = " + to_string(value), *stage);
+            }
+    }
+
     // Which points of a region are taken may hang on the last digit.
     Detail most_detail() const { return std::min(gives(), Detail::normal); }
 
@@ -270,6 +284,7 @@ void check_metamorphic_narrowphase(const PluginLibrary& library, const LoadedPlu
     suite.run("triangles subdivided", [&] { checks.meshes_subdivided(); });
     suite.run("earlier calls leave no trace", [&] { checks.earlier_calls(); });
     suite.run("ends of all parameter ranges", [&] { checks.parameters(); });
+    suite.run("gives no more than it declares", [&] { checks.gives_what_it_declares(); });
     suite.run("crossings as declared", [&] { checks.crossings(); });
     suite.run("exact as declared", [&] { checks.exact(); });
 }
