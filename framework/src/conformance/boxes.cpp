@@ -60,7 +60,7 @@ BoxScene power_law(std::uint64_t seed) {
     Random random(seed);
     return make_boxes(usual_count, [&](std::size_t) {
         const double size = std::min(1e3, 1e-3 / std::sqrt(random.between(1e-12, 1)));
-        return box_at(random.point(0.1), {size, size, size});
+        return box_at(random.point(0.02), {size, size, size});
     });
 }
 
