@@ -2,8 +2,8 @@
 //
 // Speed is that of batches of 64 pairs, as the walk over two meshes hands them over, from the processor's cache and on
 // one thread. Answers are compared with an oracle in rational numbers, family by family.
+#include "conformance/triangle_families.h"
 #include "oracle/rational_triangles.h"
-#include "oracle/triangle_families.h"
 
 #include <kolize/plugin_library.h>
 #include <kolize/simulation.h>
@@ -53,8 +53,8 @@ std::vector<Contestant> contestants(const kolize::PluginLibrary& library, kolize
     return found;
 }
 
-Pairs pairs_of(const oracle::TriangleFamily& family, std::size_t count, std::uint64_t seed) {
-    oracle::PairMaker maker(seed);
+Pairs pairs_of(const kolize::TriangleFamily& family, std::size_t count, std::uint64_t seed) {
+    kolize::PairMaker maker(seed);
     Pairs pairs;
     for (std::size_t i = 0; i < count; ++i) pairs.push_back((maker.*family.make)());
     return pairs;
@@ -98,8 +98,8 @@ void print_head(const std::vector<Contestant>& all, const std::vector<std::strin
 
 void print_rates(const std::vector<Contestant>& all) {
     print_head(all, {"10^6 pairs a second"});
-    for (std::size_t w = 0; w < oracle::triangle_families().size(); ++w) {
-        std::printf("| %s |", oracle::triangle_families()[w].name.c_str());
+    for (std::size_t w = 0; w < kolize::triangle_families().size(); ++w) {
+        std::printf("| %s |", kolize::triangle_families()[w].name.c_str());
         for (const Contestant& contestant : all) std::printf(" %.3g |", 1e-6 * median(contestant.rates[w]));
         std::printf("\n");
     }
@@ -111,7 +111,7 @@ std::size_t print_errors(const std::vector<Contestant>& all, const kolize::Plugi
     std::printf("\nFalse hits + misses, of %zu pairs in each family:\n\n", pairs_of_each);
     print_head(all, {"wrong", "hits"});
     std::size_t wrong_though_exact = 0;
-    for (const auto& family : oracle::triangle_families()) {
+    for (const auto& family : kolize::triangle_families()) {
         const Pairs pairs = pairs_of(family, pairs_of_each, seed);
         Answers truth, hit;
         for (const TrianglePair& pair : pairs) truth.push_back(oracle::triangles_meet(pair.a, pair.b));
@@ -155,11 +155,11 @@ int main(int argc, char** argv) {
         std::vector<Contestant> all = contestants(library, *host);
         if (rounds > 0) {
             std::vector<Pairs> workloads;
-            for (const auto& family : oracle::triangle_families()) workloads.push_back(pairs_of(family, count, seed));
+            for (const auto& family : kolize::triangle_families()) workloads.push_back(pairs_of(family, count, seed));
             measure(all, workloads, rounds);
             print_rates(all);
         }
-        const std::size_t families = oracle::triangle_families().size(), of_each = (verify + families - 1) / families;
+        const std::size_t families = kolize::triangle_families().size(), of_each = (verify + families - 1) / families;
         if (of_each > 0 && print_errors(all, library, of_each, seed) > 0) {
             std::fprintf(stderr, "bench_triangle_tests: a test that claims to be exact gave a wrong answer\n");
             return 1;

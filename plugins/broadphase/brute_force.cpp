@@ -1,9 +1,5 @@
-// Broadphase by brute force: every box against every other.
-//
-// Source    The definition; every other broadphase is judged by it.
-// Cost      N (N - 1) / 2 box tests, no memory.
-// Accuracy  Exact: a pair is reported if and only if its closed boxes overlap.
-// Choose it for up to about fifty bodies, and to find out whether another broadphase is to blame.
+// Broadphase by brute force: every box against every other, as overlap is defined. Every other broadphase is judged by
+// it.
 #include <kolize/plugin.h>
 
 namespace {
@@ -23,4 +19,8 @@ public:
 
 }  // namespace
 
-KOLIZE_PLUGIN(BruteForce, .name = "brute_force", .summary = "every box against every other", .source = "the definition")
+KOLIZE_PLUGIN(BruteForce, .name = "brute_force", .summary = "every box against every other", .source = "the definition",
+              .cost = "N (N - 1) / 2 box tests, no memory.",
+              .accuracy = "Exact: a pair is reported if and only if its closed boxes overlap.",
+              .choose = "For up to about fifty bodies, and to find out whether another broadphase is to blame.",
+              .capabilities = {.exact = true})

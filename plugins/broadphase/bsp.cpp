@@ -1,13 +1,6 @@
 // Broadphase by binary space partition: space is halved by planes until few boxes are left in each part.
 //
-// Source    Fuchs, Kedem, Naylor, On visible surface generation by a priori tree structures (SIGGRAPH 1980), with
-//           planes across the axes only: Bentley's k-d tree (1975); Ericson, Real-Time Collision Detection
-//           (2005), 7.3-8.3.
-// Cost      O(N log N + pairs) while most planes cut few boxes. The tree is walked as it is made and never stored:
-//           memory is 4 bytes for each box in the parts between the root and the present one.
-// Accuracy  Exact: a pair is reported if and only if its closed boxes overlap.
-// Choose it for boxes that are long, thin or of very different sizes and lie unevenly: it has no cell size to get
-//        wrong.
+// Planes stand across the axes only, as in Bentley's k-d tree. The tree is walked as it is made and never stored.
 #include <kolize/plugin.h>
 
 #include <algorithm>
@@ -161,5 +154,14 @@ private:
 }  // namespace
 
 KOLIZE_PLUGIN(Bsp, .name = "bsp", .summary = "space halved by planes across the axes until few boxes are left",
-              .source = "Fuchs, Kedem, Naylor, SIGGRAPH 1980; Ericson, Real-Time Collision Detection (2005), 8.1-8.3",
-              .capabilities = {.outline = "planes"})
+              .source =
+                  "Fuchs, Kedem, Naylor, On visible surface generation by a priori tree structures, SIGGRAPH 1980; "
+                  "Bentley 1975; Ericson, Real-Time Collision Detection (2005), 7.3-8.3",
+              .cost =
+                  "O(N log N + pairs) while most planes cut few boxes. Memory is 4 bytes for each box in the parts "
+                  "between the root and the present one.",
+              .accuracy = "Exact: a pair is reported if and only if its closed boxes overlap.",
+              .choose =
+                  "Boxes that are long, thin or of very different sizes and lie unevenly: it has no cell size to get "
+                  "wrong. Take grid for boxes of similar size.",
+              .capabilities = {.exact = true, .outline = "planes"})

@@ -1,11 +1,7 @@
 // Broadphase by a hierarchy of bounding spheres: groups of boxes whose spheres are apart cannot overlap.
 //
-// Source    Hubbard, Approximating polyhedra with spheres for time-critical collision detection (1996), 3;
-//           Ericson, Real-Time Collision Detection (2005), 6.2.1 top-down construction, 6.5.1 the union of two spheres.
-// Cost      O(N log N) to build and about O(N + pairs) to walk; about 200 bytes a box. While boxes
-//           stay near their neighbours the tree of the last step is kept and only its spheres are made anew, in O(N).
-// Accuracy  Exact: spheres are rounded outward, and what they leave is tested box against box.
-// Choose it for bodies of very different sizes or uneven density; for similar ones `grid` is several times faster.
+// Spheres are rounded outward, and what they leave is tested box against box. While boxes stay near their neighbours
+// the tree of the last step is kept and only its spheres are made anew.
 #include <kolize/plugin.h>
 
 #include <algorithm>
@@ -228,6 +224,14 @@ private:
 
 }  // namespace
 
-KOLIZE_PLUGIN(SphereHierarchy, .name = "sphere_hierarchy", .summary = "binary tree of bounding spheres",
-              .source = "Hubbard 1996; Ericson, Real-Time Collision Detection (2005), 6.2 and 6.5",
-              .capabilities = {.outline = "spheres"})
+KOLIZE_PLUGIN(
+    SphereHierarchy, .name = "sphere_hierarchy", .summary = "binary tree of bounding spheres",
+    .source =
+        "Hubbard, Approximating polyhedra with spheres for time-critical collision detection (1996), 3; Ericson, "
+        "Real-Time Collision Detection (2005), 6.2.1 and 6.5.1",
+    .cost =
+        "O(N log N) to build and about O(N + pairs) to walk; O(N) instead of building while the tree of the last step "
+        "is kept. About 200 bytes a box.",
+    .accuracy = "Exact: a pair is reported if and only if its closed boxes overlap.",
+    .choose = "Bodies of very different sizes or uneven density; for similar ones grid is several times faster.",
+    .capabilities = {.exact = true, .outline = "spheres"})

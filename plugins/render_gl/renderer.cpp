@@ -1,10 +1,7 @@
 // Renderer: OpenGL 3.3 core on an image in memory, by libepoxy and EGL, which needs neither a display nor a graphics
 // card; or in a window, by GLFW, with a panel by Dear ImGui.
 //
-// Source: Blinn-Phong shading (Blinn 1977); billboards as in Akenine-Moeller, Haines and Hoffman, Real-Time Rendering,
-// 2018, 13.6. Bodies of one shape are drawn by one instanced call, so ten thousand cost a few calls only.
-// Cost: by Mesa's software rasteriser a few tens of milliseconds a picture of 1280x720; see docs/render.md.
-// Choose it wherever a picture is wanted: it is the only renderer there is.
+// Bodies of one shape are drawn by one instanced call, so ten thousand cost a few calls only.
 #include "billboards.h"
 #include "bodies.h"
 #include "context.h"
@@ -169,6 +166,14 @@ private:
 }  // namespace
 }  // namespace kolize::gl
 
-KOLIZE_PLUGIN(kolize::gl::GlRenderer, .name = "gl",
-              .summary = "OpenGL 3.3 in a window, or on an image in memory without a display",
-              .source = "Blinn 1977; Akenine-Moeller, Haines and Hoffman 2018, 13.6")
+KOLIZE_PLUGIN(
+    kolize::gl::GlRenderer, .name = "gl",
+    .summary = "OpenGL 3.3 in a window, or on an image in memory without a display",
+    .source =
+        "Blinn-Phong shading: Blinn 1977; billboards: Akenine-Moeller, Haines and Hoffman, Real-Time Rendering (2018), "
+        "13.6",
+    .cost = "By Mesa's software rasteriser a few tens of milliseconds a picture of 1280x720; see docs/render.md.",
+    .accuracy =
+        "Bodies stand where the run has them, to the float precision of a graphics card; pictures of one driver are "
+        "the same bytes again.",
+    .choose = "Wherever a picture is wanted: it is the only renderer there is.")

@@ -1,13 +1,9 @@
 // Explode: a body that the rule is about ends its life in an explosion at the first thing it touches.
 //
-// What     Every dynamic body of a contact that fits the rule's `when` gives two events: an explosion where it touches,
-//          and its removal, carried out by the framework after the stage. A body with many contacts explodes once, at
-//          the first of them in canonical order. Where only the overlap is known the explosion is at the body's centre
-//          of mass. What was hit is not moved. A rule without `when` fits every body.
-// Source   Behaviour of games; no physics in it.
-// Cost     One look at each contact.
-// Accuracy Exact as to who explodes; the place is as good as the narrowphase's contact point.
-// Choose   for missiles: [[response]] plugin = "explode", when = { kind = "missile" }.
+// Every dynamic body of a contact that fits the rule's `when` gives two events: an explosion where it touches, and its
+// removal, carried out by the framework after the stage. A body with many contacts explodes once, at the first of them
+// in canonical order. Where only the overlap is known the explosion is at the body's centre of mass. What was hit is
+// not moved. A rule without `when` fits every body.
 #include <kolize/plugin.h>
 
 namespace {
@@ -40,4 +36,7 @@ private:
 }  // namespace
 
 KOLIZE_PLUGIN(Explode, .name = "explode", .summary = "bodies that fit the rule are removed in an explosion",
-              .source = "behaviour of games", .capabilities = {.needs = Detail::overlap, .uses = Detail::overlap})
+              .source = "behaviour of games; no physics in it", .cost = "One look at each contact.",
+              .accuracy = "Exact as to who explodes; the place is as good as the narrowphase's contact point.",
+              .choose = "For missiles: [[response]] plugin = \"explode\", when = { kind = \"missile\" }.",
+              .capabilities = {.needs = Detail::overlap, .uses = Detail::overlap})

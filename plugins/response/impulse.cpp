@@ -1,30 +1,18 @@
 // Impulse response: rigid bodies bounce off each other and turn, without friction.
 //
-// What     A contact that approaches gets the impulse that sends its normal velocity back, times the restitution, with
-//          the full inertia of both bodies. Contacts that share bodies are answered again and again until none
-//          approaches, never averaged: a body that touches at several places cannot be let in at one of them. Where one
-//          body hits several at once physics leaves the outcome open, and `order` decides:
-//            sequential  one contact at a time, the one that approaches fastest. Of approaches that are the same to the
-//                        last bit the first in canonical order: nothing else depends on how bodies are numbered.
-//            symmetric   all that approach, along the joint impulse that would stop them together. Keeps the symmetry
-//                        of a scene, and no two contacts change places when bodies are numbered otherwise.
-//          Below restitution 1 bounces between several contacts become ever smaller. When a thousandth of the speed is
-//          left, or max_impulses is reached, the rest of the approach is stopped in one inelastic impact. Restitution 0
-//          is that impact alone.
-// Source   One contact: Mirtich, "Impulse-based dynamic simulation of rigid body systems", 1996, 3.2. Sequential:
-// Vouga,
-//          Smith, Kaufman, Tamstorf, Grinspun, "All's well that ends well: guaranteed resolution of simultaneous rigid
-//          body impact", ACM TOG 36(4), 2017 (it ends after finitely many reflections if the bodies can part at all).
-//          Symmetric: Smith, Kaufman, Vouga, Tamstorf, Grinspun, "Reflections on simultaneous impact", ACM TOG 31(4),
-//          2012, generalized reflections. Inelastic: Moreau, "Unilateral contact and dry friction in finite freedom
-//          dynamics", 1988.
-// Cost     Sequential: per impulse the contacts of the two bodies, times the logarithm of those of the island (the
-//          contacts linked through moving bodies). Symmetric: per pass all contacts of the island, and a linear system
-//          over those that approach. A handful of impulses or passes an island is usual.
-// Accuracy With restitution 1 kinetic energy is kept to rounding, whatever the contact points, normals and inertia,
-//          because the impulse and the velocity change use the same inverse mass matrix; below 1 what is lost is
-//          reported to rounding. Momentum and angular momentum of a pair of dynamic bodies always are kept.
-// Choose   for bodies whose rotation matters. For balls that only bounce, simple_bounce is cheaper.
+// A contact that approaches gets the impulse that sends its normal velocity back, times the restitution, with the full
+// inertia of both bodies. Contacts that share bodies are answered again and again until none approaches, never
+// averaged: a body that touches at several places cannot be let in at one of them. Where one body hits several at once
+// physics leaves the outcome open, and `order` decides:
+//   sequential  one contact at a time, the one that approaches fastest. Of approaches that are the same to the last bit
+//               the first in canonical order: nothing else depends on how bodies are numbered. It ends after finitely
+//               many reflections if the bodies can part at all (Vouga et al.).
+//   symmetric   all that approach, along the joint impulse that would stop them together (generalized reflections,
+//               Smith et al.). Keeps the symmetry of a scene, and no two contacts change places when bodies are
+//               numbered otherwise.
+// Below restitution 1 bounces between several contacts become ever smaller. When a thousandth of the speed is left, or
+// max_impulses is reached, the rest of the approach is stopped in one inelastic impact (Moreau). Restitution 0 is that
+// impact alone.
 #include <kolize/joint_impulse.h>
 #include <kolize/plugin.h>
 
@@ -238,5 +226,20 @@ private:
 }  // namespace
 
 KOLIZE_PLUGIN(Impulse, .name = "impulse", .summary = "rigid bodies bounce and turn: frictionless impulses",
-              .source = "Mirtich 1996, 3.2; Vouga et al. 2017, sequential; Smith et al. 2012, symmetric",
+              .source =
+                  "One contact: Mirtich, Impulse-based dynamic simulation of rigid body systems (1996), 3.2. "
+                  "Sequential: Vouga et al., All's well that ends well, ACM TOG 36(4), 2017. Symmetric: Smith et al., "
+                  "Reflections on simultaneous impact, ACM TOG 31(4), 2012. Inelastic: Moreau, Unilateral contact and "
+                  "dry friction in finite freedom dynamics (1988)",
+              .cost =
+                  "Sequential: per impulse the contacts of the two bodies, times the logarithm of those of the island "
+                  "(the contacts linked through moving bodies). Symmetric: per pass all contacts of the island, and a "
+                  "linear system over those that approach. A handful of impulses or passes an island is usual.",
+              .accuracy =
+                  "With restitution 1 kinetic energy is kept to rounding, whatever the contact points, normals and "
+                  "inertia; below 1 what is lost is reported to rounding. Momentum and angular momentum of a pair of "
+                  "dynamic bodies are always kept.",
+              .choose =
+                  "For bodies that bounce and whose rotation matters. For balls that only bounce simple_bounce is "
+                  "cheaper; for what rests or rubs take solver.",
               .capabilities = {.needs = Detail::normal, .uses = Detail::manifold})

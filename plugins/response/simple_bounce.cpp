@@ -1,14 +1,8 @@
 // Simple bounce: bodies exchange momentum along the contact normal and do not turn.
 //
-// What     Off a static obstacle v' = v - (1 + e) (v.n) n. Two dynamic bodies exchange momentum along the line of
-//          centres, with their own masses; what is tangential is kept. Angular velocities stay as they are. Dynamic
-//          bodies are taken as their bounding spheres, for which this is exact.
-// Source   Collision of smooth spheres: Goldstein, Poole, Safko, Classical Mechanics, 3.11. Passes until nothing
-//          approaches: Guendelman, Bridson, Fedkiw, ACM TOG 22(3), 2003, section 6.
-// Cost     A few dozen operations a contact and pass; one pass more than the longest chain of hits.
-// Accuracy With restitution 1 kinetic energy, and momentum of a dynamic pair, are kept to rounding. Off-centre hits of
-//          anything but a sphere are wrong: nothing turns.
-// Choose   for balls, particles, and for bodies whose rotation nobody looks at; impulse otherwise.
+// Off a static obstacle v' = v - (1 + e) (v.n) n. Two dynamic bodies exchange momentum along the line of centres, with
+// their own masses; what is tangential is kept. Angular velocities stay as they are. Dynamic bodies are taken as their
+// bounding spheres, for which this is exact. Contacts are answered in turn, pass by pass, until none approaches.
 #include <kolize/plugin.h>
 
 namespace {
@@ -67,5 +61,12 @@ private:
 
 KOLIZE_PLUGIN(SimpleBounce, .name = "simple_bounce",
               .summary = "smooth spheres: momentum along the normal, no rotation",
-              .source = "Goldstein, Poole, Safko, Classical Mechanics, 3.11; Guendelman et al. 2003, 6",
+              .source =
+                  "collision of smooth spheres: Goldstein, Poole, Safko, Classical Mechanics, 3.11; passes: "
+                  "Guendelman, Bridson, Fedkiw, ACM TOG 22(3), 2003, 6",
+              .cost = "A few dozen operations a contact and pass; one pass more than the longest chain of hits.",
+              .accuracy =
+                  "With restitution 1 kinetic energy, and momentum of a dynamic pair, are kept to rounding. Off-centre "
+                  "hits of anything but a sphere are wrong: nothing turns.",
+              .choose = "For balls, particles, and bodies whose rotation nobody looks at; impulse otherwise.",
               .capabilities = {.needs = Detail::normal, .uses = Detail::normal, .bounding_spheres = true})

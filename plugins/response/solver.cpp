@@ -599,15 +599,18 @@ private:
         }
     }
 
+    // In the order of the contacts, which is by pair.
     void remember(const ResponseInput& input, const World& world) {
+        order_.clear();
+        for (std::uint32_t i = 0; i < rows_.size(); ++i) order_.push_back({rows_[i].contact, i});
+        std::sort(order_.begin(), order_.end());
         next_memory_.clear();
-        for (const Row& row : rows_) {
-            const Contact& c = input.contacts[row.contact];
+        for (const auto& [contact, i] : order_) {
+            const Row& row = rows_[i];
+            const Contact& c = input.contacts[contact];
             next_memory_.push_back(
                 {{c.a, c.b}, world.orientation[c.a].conjugate() * c.arm_a, row.directed(row.lambda, row.lambda_t)});
         }
-        std::stable_sort(next_memory_.begin(), next_memory_.end(),
-                         [](const Memory& x, const Memory& y) { return x.pair < y.pair; });
         memory_.swap(next_memory_);
     }
 
@@ -653,7 +656,7 @@ private:
     std::vector<std::uint32_t> number_;                           // per body of the world: its place in bodies_, or 0
     std::vector<Moving> before_;                                  // as the call began
     std::vector<Moving> bodies_;                                  // the first one stands for all static bodies
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> order_;  // root of the island, contact
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> order_;  // root of the island, contact; or contact, row
     std::vector<Island> islands_;
     std::vector<Row> rows_;
     std::vector<Axis> axes_;  // the unknowns of problem_

@@ -48,6 +48,10 @@ TEST_CASE("the broadphase suite catches each way of being wrong", "[broadphase][
     SECTION("a > b") { require_caught("unordered", "uniform boxes", "a < b"); }
     SECTION("static pairs") { require_caught("reports_static", "nine in ten static", "two static rows"); }
     SECTION("boxes of the last frame") { require_caught("remembers", "moving boxes, rows kept", "frame"); }
+    SECTION("boxes that hardly moved") { require_caught("lazy", "few rows move, some jump", "frame"); }
+    SECTION("boxes of another object") { require_caught("shares", "two objects at a time", "of two objects"); }
+    SECTION("references lost") { require_caught("loses_references", "rows that are references", "is missing"); }
+    SECTION("exact claimed") { require_caught("inexact", "exact as declared", "are apart"); }
     SECTION("NaN accepted") { require_caught("takes_nan", "refuses non-finite boxes", "no std::invalid_argument"); }
     SECTION("outline not declared") { require_caught("undeclared_outline", "outline", "name none"); }
     SECTION("outline empty") { require_caught("empty_outline", "outline", "is empty"); }

@@ -1,6 +1,6 @@
+#include "conformance/triangle_families.h"
 #include "narrowphase/two_bodies.h"
 #include "oracle/rational_triangles.h"
-#include "oracle/triangle_families.h"
 
 #include <kolize/predicates.h>
 
@@ -8,9 +8,7 @@
 
 using namespace kolize;
 using namespace kolize::test;
-using oracle::PairMaker;
 using oracle::RationalTriangles;
-using oracle::triangle_families;
 using oracle::triangles_meet;
 
 namespace {
@@ -18,17 +16,10 @@ namespace {
 using Settings = std::map<std::string, Value>;
 using Answers = std::vector<std::uint8_t>;
 
-std::vector<TrianglePair> pairs_of(const oracle::TriangleFamily& family, int count, std::uint64_t seed) {
-    PairMaker maker(seed);
-    std::vector<TrianglePair> pairs;
-    for (int i = 0; i < count; ++i) pairs.push_back((maker.*family.make)());
-    return pairs;
-}
-
 std::vector<TrianglePair> pairs_of_all(int count_of_each, std::uint64_t seed) {
     std::vector<TrianglePair> all;
     for (const auto& family : triangle_families())
-        for (const TrianglePair& pair : pairs_of(family, count_of_each, seed++)) all.push_back(pair);
+        for (const TrianglePair& pair : triangle_pairs(family, count_of_each, seed++)) all.push_back(pair);
     return all;
 }
 
@@ -84,7 +75,7 @@ TEST_CASE("the two oracles of intersecting triangles agree, and the families hav
     for (const auto& family : triangle_families()) {
         CAPTURE(family.name, seed);
         int hits = 0, wrong = 0;
-        const auto pairs = pairs_of(family, 30, seed);
+        const auto pairs = triangle_pairs(family, 30, seed);
         for (const TrianglePair& pair : pairs) {
             constexpr int finest = 1074;
             std::vector<oracle::BigPoint> a, b;
@@ -108,7 +99,7 @@ TEST_CASE("exact decides as rational arithmetic does, in every family", "[narrow
     const TriangleTest exact("exact");
     for (const auto& family : triangle_families()) {
         CAPTURE(family.name, seed);
-        const auto pairs = pairs_of(family, 1700, seed);
+        const auto pairs = triangle_pairs(family, 1700, seed);
         Answers expected;
         for (const TrianglePair& pair : pairs) expected.push_back(triangles_meet(pair.a, pair.b));
         CHECK(exact.answers(pairs) == expected);
@@ -120,7 +111,7 @@ TEST_CASE("what exact gives as the common segment lies within a few roundings of
     constexpr double few = 16;
     for (const auto& family : triangle_families()) {
         int checked = 0;
-        for (const TrianglePair& pair : pairs_of(family, 400, seed)) {
+        for (const TrianglePair& pair : triangle_pairs(family, 400, seed)) {
             if (!triangles_intersect(pair.a, pair.b)) continue;
             CAPTURE(family.name, seed, ++checked);
             const std::vector<Vec3> exact = RationalTriangles(pair.a, pair.b).shared_points();
@@ -140,7 +131,7 @@ TEST_CASE("what exact gives as the common segment lies within a few roundings of
 TEST_CASE("plain tests in double are right in general position", "[narrowphase]") {
     constexpr std::uint64_t seed = 20261104;
     CAPTURE(seed);
-    const auto pairs = pairs_of(triangle_families().front(), 20000, seed);
+    const auto pairs = triangle_pairs(triangle_families().front(), 20000, seed);
     const Answers expected = TriangleTest("exact").answers(pairs);
     CHECK(TriangleTest("moller").answers(pairs) == expected);
     CHECK(TriangleTest("guigue_devillers").answers(pairs) == expected);
@@ -201,7 +192,7 @@ TEST_CASE("a triangle test answers a pair alike in a batch of any length, with s
 
 TEST_CASE("segments of plain tests are those of exact arithmetic where triangles cross plainly", "[narrowphase]") {
     constexpr std::uint64_t seed = 20261108;
-    const auto pairs = pairs_of(triangle_families().front(), 2000, seed);
+    const auto pairs = triangle_pairs(triangle_families().front(), 2000, seed);
     for (const char* plugin : {"guigue_devillers", "moller", "angle_sum"})
         for (const auto& [precision, tolerance] : {std::pair("double", 1e-9), std::pair("float", 1e-2)}) {
             const TriangleTest test(plugin, with("precision", precision));
@@ -230,7 +221,7 @@ TEST_CASE("in float the distance from the origin costs nothing: differences are 
     for (const auto& name : {"corner touches", "sides touch", "in one plane"})
         for (const auto& family : triangle_families())
             if (family.name == name)
-                for (const TrianglePair& pair : pairs_of(family, 500, seed)) near.push_back(pair);
+                for (const TrianglePair& pair : triangle_pairs(family, 500, seed)) near.push_back(pair);
     far = near;
     for (TrianglePair& pair : far)
         for (int k = 0; k < 3; ++k) {

@@ -1,18 +1,4 @@
-// Counts the heap allocations of the whole program, libraries and plugins included.
+// The counter of the program itself, which holds plugins to the same contract as the tests.
 #pragma once
 
-#include <cstddef>
-
-class AllocationCounter {
-public:
-    AllocationCounter();
-
-    // Calls of operator new by any thread since construction.
-    std::size_t count() const;
-
-    // False under a sanitizer, which brings its own operator new: count() then stays 0.
-    static bool available();
-
-private:
-    std::size_t start_;
-};
+#include "allocations.h"

@@ -47,4 +47,18 @@ struct ConformanceReport {
 // A row a check, a column a plugin, then the details of what failed or was skipped. The reports are of one stage.
 KOLIZE_API void print_matrix(std::ostream& out, const std::vector<ConformanceReport>& reports);
 
+// How often a plugin is wrong about one family of input, against exact answers.
+struct AccuracyRow {
+    std::string family;
+    std::size_t pairs = 0;       // that it was asked about
+    std::size_t hits = 0;        // of them, those that are true
+    std::size_t false_hits = 0;  // found, and not true
+    std::size_t misses = 0;      // true, and not found
+};
+
+// Triangle tests on families of triangle pairs, broadphases on crowds of boxes; empty for all other plugins. The same
+// numbers for the same seed.
+KOLIZE_API std::vector<AccuracyRow> measure_accuracy(const PluginLibrary& library, const LoadedPlugin& plugin,
+                                                     std::uint64_t seed = 1);
+
 }  // namespace kolize

@@ -1,5 +1,6 @@
 #include "boxes.h"
 
+#include <algorithm>
 #include <iomanip>
 #include <random>
 #include <sstream>
@@ -54,6 +55,21 @@ BoxScene six_decades(std::uint64_t seed) {
     });
 }
 
+// Twice as large is a quarter as often.
+BoxScene power_law(std::uint64_t seed) {
+    Random random(seed);
+    return make_boxes(usual_count, [&](std::size_t) {
+        const double size = std::min(1e3, 1e-3 / std::sqrt(random.between(1e-12, 1)));
+        return box_at(random.point(0.02), {size, size, size});
+    });
+}
+
+BoxScene all_static(std::uint64_t seed) {
+    BoxScene scene = uniform_boxes(usual_count, seed);
+    scene.is_static.assign(scene.is_static.size(), 1);
+    return scene;
+}
+
 BoxScene mostly_static(std::uint64_t seed) {
     BoxScene scene = uniform_boxes(usual_count, seed);
     for (std::size_t row = 0; row < scene.is_static.size(); ++row) scene.is_static[row] = row % 10 != 3;
@@ -79,6 +95,19 @@ BoxScene touching(std::uint64_t) {
         const std::size_t x = row % 6, y = row / 6 % 6, z = row / 36;
         return Aabb{{line(x), line(y), line(z)}, {line(x + 1), line(y + 1), line(z + 1)}};
     });
+}
+
+// The same lattice with every face moved to a neighbouring number, or left: boxes touch, overlap or are apart by a unit
+// in the last place.
+BoxScene nearly_touching(std::uint64_t seed) {
+    Random random(seed);
+    BoxScene scene = touching(seed);
+    for (Aabb& box : scene.bounds)
+        for (int axis = 0; axis < 3; ++axis)
+            for (double* x : {&box.min[axis], &box.max[axis]})
+                if (const double way = random.between(-1, 1); std::abs(way) > 0.3)
+                    *x = std::nextafter(*x, way > 0 ? 1e9 : -1e9);
+    return scene;
 }
 
 BoxScene flat(std::uint64_t seed) {
@@ -153,10 +182,13 @@ std::span<const BoxSceneKind> box_scene_kinds() {
         {"uniform boxes", uniform},
         {"clustered boxes", clustered},
         {"sizes over six decades", six_decades},
+        {"sizes after a power law", power_law},
         {"nine in ten static", mostly_static},
+        {"all static", all_static},
         {"all overlapping", all_overlapping},
         {"coincident boxes", coincident},
         {"touching boxes", touching},
+        {"faces a last digit apart", nearly_touching},
         {"flat boxes and points", flat},
         {"long thin boxes", rods},
         {"mirrored boxes", mirrored},
@@ -188,6 +220,7 @@ BoxScene permute(const BoxScene& scene, const std::vector<std::uint32_t>& order)
     for (const std::uint32_t row : order) {
         result.bounds.push_back(scene.bounds[row]);
         result.is_static.push_back(scene.is_static[row]);
+        if (!scene.is_reference.empty()) result.is_reference.push_back(scene.is_reference[row]);
     }
     return result;
 }
@@ -199,6 +232,38 @@ std::vector<Pair> overlapping_pairs(const BoxScene& scene) {
             if (scene.bounds[a].overlaps(scene.bounds[b]) && !(scene.is_static[a] && scene.is_static[b]))
                 pairs.push_back({a, b});
     return pairs;
+}
+
+namespace {
+
+std::string to_text(const Pair& pair) {
+    std::string text = "(";  // appended to: g++ 12 warns of "(" + std::string without cause
+    return text.append(std::to_string(pair.a)).append(", ").append(std::to_string(pair.b)).append(")");
+}
+
+}  // namespace
+
+std::string fault(const BoxScene& scene, std::vector<Pair> pairs) {
+    std::sort(pairs.begin(), pairs.end());
+    for (const Pair& pair : pairs) {
+        if (pair.a >= pair.b) return "pair " + to_text(pair) + " is not in order a < b";
+        if (pair.b >= scene.bounds.size()) return "pair " + to_text(pair) + " names a row that does not exist";
+        if (scene.is_static[pair.a] && scene.is_static[pair.b])
+            return "pair " + to_text(pair) + " is of two static rows";
+    }
+    if (const auto twice = std::adjacent_find(pairs.begin(), pairs.end()); twice != pairs.end())
+        return "pair " + to_text(*twice) + " is reported twice";
+    std::vector<Pair> missing;
+    const std::vector<Pair> expected = overlapping_pairs(scene);
+    std::set_difference(expected.begin(), expected.end(), pairs.begin(), pairs.end(), std::back_inserter(missing));
+    return missing.empty() ? "" : "pair " + to_text(missing.front()) + " overlaps and is missing";
+}
+
+std::string inexact(const BoxScene& scene, std::vector<Pair> pairs) {
+    for (const Pair& pair : pairs)
+        if (!scene.bounds[pair.a].overlaps(scene.bounds[pair.b]))
+            return "it declares itself exact, and the boxes of pair " + to_text(pair) + " are apart";
+    return "";
 }
 
 std::string to_code(const BoxScene& scene) {

@@ -10,6 +10,7 @@ namespace kolize {
 struct BoxScene {
     std::vector<Aabb> bounds;
     std::vector<std::uint8_t> is_static;
+    std::vector<std::uint8_t> is_reference = {};  // empty: none
 };
 
 struct BoxSceneKind {
@@ -31,6 +32,12 @@ BoxScene permute(const BoxScene& scene, const std::vector<std::uint32_t>& order)
 
 // By definition: every pair of overlapping closed boxes that are not both static, sorted.
 std::vector<Pair> overlapping_pairs(const BoxScene& scene);
+
+// "" if the pairs are a right answer: no overlapping pair is missing, and each one may stand there.
+std::string fault(const BoxScene& scene, std::vector<Pair> pairs);
+
+// "" if the boxes of all pairs overlap.
+std::string inexact(const BoxScene& scene, std::vector<Pair> pairs);
 
 // A declaration of the scene that pastes into a test.
 std::string to_code(const BoxScene& scene);

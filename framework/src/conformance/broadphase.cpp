@@ -1,7 +1,5 @@
-#include "boxes.h"
-#include "suite.h"
-
-#include <kolize/simulation.h>
+#include "broadphase_under_test.h"
+#include "metamorphic.h"
 
 #include <algorithm>
 #include <numeric>
@@ -11,32 +9,10 @@ namespace kolize {
 
 namespace {
 
-using Rows = std::vector<std::uint32_t>;
-
-std::string to_text(const Pair& pair) { return "(" + std::to_string(pair.a) + ", " + std::to_string(pair.b) + ")"; }
-
-// "" if the pairs are a right answer: no overlapping pair is missing, and each one may stand there.
-std::string fault(const BoxScene& scene, std::vector<Pair> pairs) {
-    std::sort(pairs.begin(), pairs.end());
-    for (const Pair& pair : pairs) {
-        if (pair.a >= pair.b) return "pair " + to_text(pair) + " is not in order a < b";
-        if (pair.b >= scene.bounds.size()) return "pair " + to_text(pair) + " names a row that does not exist";
-        if (scene.is_static[pair.a] && scene.is_static[pair.b])
-            return "pair " + to_text(pair) + " is of two static rows";
-    }
-    if (const auto twice = std::adjacent_find(pairs.begin(), pairs.end()); twice != pairs.end())
-        return "pair " + to_text(*twice) + " is reported twice";
-    std::vector<Pair> missing;
-    const std::vector<Pair> expected = overlapping_pairs(scene);
-    std::set_difference(expected.begin(), expected.end(), pairs.begin(), pairs.end(), std::back_inserter(missing));
-    return missing.empty() ? "" : "pair " + to_text(missing.front()) + " overlaps and is missing";
-}
-
 // The plugin under test; the checks are its member functions.
-class BroadphaseChecks {
+class BroadphaseChecks : BroadphaseUnderTest {
 public:
-    BroadphaseChecks(const PluginLibrary& library, const LoadedPlugin& plugin, const ConformanceOptions& options)
-        : library_(library), plugin_(plugin), options_(options) {}
+    using BroadphaseUnderTest::BroadphaseUnderTest;
 
     void scene(const BoxSceneKind& kind) const {
         for (std::uint64_t seed = options_.seed; seed < options_.seed + 3; ++seed) expect_right(kind.make(seed));
@@ -51,7 +27,7 @@ public:
     void permuted_rows() const {
         std::mt19937_64 random(options_.seed);
         const BoxScene boxes = uniform_boxes(200, options_.seed);
-        Rows order(boxes.bounds.size());
+        std::vector<std::uint32_t> order(boxes.bounds.size());
         std::iota(order.begin(), order.end(), 0u);
         for (int round = 0; round < 4; ++round) {
             std::shuffle(order.begin(), order.end(), random);
@@ -133,6 +109,7 @@ public:
     }
 
     void warm_calls_allocate_nothing() const {
+        if (plugin_.descriptor->capabilities.allocates) throw Inapplicable("it declares that its calls allocate");
         if (!options_.allocations) throw Inapplicable("this program does not count allocations");
         const auto host = make_host(1);
         const auto stage = make(*host);
@@ -202,69 +179,6 @@ private:
         }
     }
 
-    using Settings = std::map<std::string, Setting>;
-
-    StagePtr<Broadphase> make(Host& host, const Settings& settings = {}) const {
-        StageConfig config = default_config(plugin_);
-        config.settings = settings;
-        return library_.make<Broadphase>(config, host);
-    }
-
-    static std::vector<Pair> find(Broadphase& stage, const BoxScene& scene, std::uint64_t generation) {
-        std::vector<Pair> pairs;
-        stage.find_pairs({scene.bounds, scene.is_static, generation}, pairs);
-        return pairs;
-    }
-
-    std::vector<Pair> find_afresh(const BoxScene& scene) const {
-        const auto host = make_host(1);
-        return find(*make(*host), scene, 1);
-    }
-
-    static std::vector<Value> values_to_try(const Parameter& parameter) {
-        std::vector<Value> values{parameter.default_value};
-        for (const std::string& choice : parameter.choices) values.push_back(choice);
-        if (std::holds_alternative<bool>(parameter.default_value)) values = {false, true};
-        constexpr double most = std::numeric_limits<double>::max();
-        for (const double end : {parameter.min, parameter.max}) {
-            if (end == -most || end == most) continue;
-            if (std::holds_alternative<double>(parameter.default_value)) values.push_back(end);
-            if (std::holds_alternative<std::int64_t>(parameter.default_value))
-                values.push_back(static_cast<std::int64_t>(end));
-        }
-        return values;
-    }
-
-    void expect_right(const BoxScene& scene) const {
-        if (!fault(scene, find_afresh(scene)).empty()) throw_reduced(scene);
-    }
-
-    static void expect_right(const std::vector<Pair>& pairs, const BoxScene& scene, const std::string& what) {
-        if (const std::string wrong = fault(scene, pairs); !wrong.empty())
-            throw Violation(what + ": " + wrong + ": " + to_code(scene));
-    }
-
-    // `pairs` are right, and the very ones that a new object finds.
-    void expect_same(std::vector<Pair> pairs, const BoxScene& scene, const std::string& what) const {
-        expect_right(pairs, scene, what);
-        std::vector<Pair> afresh = find_afresh(scene);
-        std::sort(pairs.begin(), pairs.end());
-        std::sort(afresh.begin(), afresh.end());
-        if (pairs != afresh) throw Violation(what + ": not the pairs that a new object finds: " + to_code(scene));
-    }
-
-    // Leaves out boxes as long as the answer stays wrong, so that what is printed is short.
-    [[noreturn]] void throw_reduced(BoxScene scene) const {
-        for (std::size_t row = scene.bounds.size(); row-- > 0;) {
-            Rows others(scene.bounds.size());
-            std::iota(others.begin(), others.end(), 0u);
-            others.erase(others.begin() + static_cast<std::ptrdiff_t>(row));
-            BoxScene smaller = permute(scene, others);
-            if (!fault(smaller, find_afresh(smaller)).empty()) scene = std::move(smaller);
-        }
-        throw Violation(fault(scene, find_afresh(scene)) + ": " + to_code(scene));
-    }
-
     template <class Spoil>
     void expect_refused(Spoil&& spoil) const {
         constexpr std::size_t bad_row = 17;
@@ -282,10 +196,6 @@ private:
         }
         throw Violation("no std::invalid_argument for row 17: " + to_code(bad));
     }
-
-    const PluginLibrary& library_;
-    const LoadedPlugin& plugin_;
-    const ConformanceOptions& options_;
 };
 
 }  // namespace
@@ -306,6 +216,7 @@ std::vector<Check> check_broadphase(const PluginLibrary& library, const LoadedPl
     suite.run("refuses non-finite boxes", [&] { checks.refuses_non_finite(); });
     suite.run("refuses inverted boxes", [&] { checks.refuses_inverted(); });
     suite.run("warm calls allocate nothing", [&] { checks.warm_calls_allocate_nothing(); });
+    check_metamorphic_broadphase(library, plugin, options, suite);
     return suite.take();
 }
 

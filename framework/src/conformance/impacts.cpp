@@ -124,6 +124,29 @@ ImpactScene renumbered(const ImpactScene& scene, const std::vector<std::uint32_t
     return result;
 }
 
+ImpactScene mirrored(const ImpactScene& scene) {
+    const Vec3 mirror(-1, 1, 1);
+    ImpactScene image = scene;
+    World& world = image.world;
+    for (std::size_t i = 0; i < world.size(); ++i) {
+        const Quat q = world.orientation[i];
+        world.position[i] = mirror.cwiseProduct(world.position[i]);
+        world.orientation[i] = Quat(q.w(), q.x(), -q.y(), -q.z());
+        world.velocity[i] = mirror.cwiseProduct(world.velocity[i]);
+        world.angular_velocity[i] = -mirror.cwiseProduct(world.angular_velocity[i]);  // as every axial vector
+    }
+    for (Contact& contact : image.contacts)
+        for (Vec3* v : {&contact.normal, &contact.arm_a, &contact.arm_b}) *v = mirror.cwiseProduct(*v);
+    return image;
+}
+
+ImpactScene heavier(const ImpactScene& scene, double by) {
+    ImpactScene result = scene;
+    for (double& inverse : result.world.inverse_mass) inverse /= by;
+    for (Vec3& inverse : result.world.inverse_inertia) inverse /= by;
+    return result;
+}
+
 std::string to_text(const ImpactScene& scene) {
     const Eigen::IOFormat row(Eigen::FullPrecision, Eigen::DontAlignCols, ", ", ", ", "", "", "{", "}");
     std::ostringstream text;

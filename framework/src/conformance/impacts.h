@@ -25,6 +25,12 @@ ImpactScene moved(const ImpactScene& scene, const Quat& turn, const Vec3& shift)
 // be.
 ImpactScene renumbered(const ImpactScene& scene, const std::vector<std::uint32_t>& number);
 
+// The same scene with left and right exchanged: x is -x.
+ImpactScene mirrored(const ImpactScene& scene);
+
+// All masses and moments of inertia times `by`.
+ImpactScene heavier(const ImpactScene& scene, double by);
+
 // The bodies and contacts as text that tells one case from another and can be rebuilt from.
 std::string to_text(const ImpactScene& scene);
 

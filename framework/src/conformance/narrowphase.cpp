@@ -1,47 +1,15 @@
 #include "impact_times.h"
-#include "suite.h"
-#include "two_solids.h"
-
-#include <kolize/simulation.h>
-
-#include <cstring>
+#include "metamorphic.h"
+#include "narrowphase_under_test.h"
 
 namespace kolize {
 
 namespace {
 
-constexpr double tolerance = 1e-9;  // m, rad: for solids of size 1 seen from another side
-
-[[noreturn]] void violate(const std::string& what, const World& world) {
-    throw Violation(what + ": " + to_text(world));
-}
-
-bool same_bits(const std::vector<Contact>& a, const std::vector<Contact>& b) {
-    if (a.size() != b.size()) return false;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        if (a[i].a != b[i].a || a[i].b != b[i].b || a[i].region != b[i].region || a[i].normal != b[i].normal ||
-            a[i].arm_a != b[i].arm_a || a[i].arm_b != b[i].arm_b || a[i].depth != b[i].depth)
-            return false;
-    return true;
-}
-
-// Each contact of `a` has its like in `b`, wherever it stands there.
-bool same_geometry(const std::vector<Contact>& a, const std::vector<Contact>& b, double within) {
-    const auto alike = [&](const Contact& x, const Contact& y) {
-        return (x.normal - y.normal).norm() < within && (x.arm_a - y.arm_a).norm() < within &&
-               (x.arm_b - y.arm_b).norm() < within && std::abs(x.depth - y.depth) < within;
-    };
-    if (a.size() != b.size()) return false;
-    for (const Contact& x : a)
-        if (std::none_of(b.begin(), b.end(), [&](const Contact& y) { return alike(x, y); })) return false;
-    return true;
-}
-
 // The plugin under test; the checks are its member functions.
-class NarrowphaseChecks {
+class NarrowphaseChecks : NarrowphaseUnderTest {
 public:
-    NarrowphaseChecks(const PluginLibrary& library, const LoadedPlugin& plugin, const ConformanceOptions& options)
-        : library_(library), plugin_(plugin), options_(options) {}
+    using NarrowphaseUnderTest::NarrowphaseUnderTest;
 
     void nothing_to_find() const {
         std::mt19937_64 random(options_.seed);
@@ -196,78 +164,6 @@ public:
         }
         if (count > 0) throw Violation(std::to_string(count) + " allocations in a fourth call on the same pairs");
     }
-
-private:
-    // What it finds to overlap are bounding volumes, of bodies that may be apart.
-    bool answers_for_volumes() const { return plugin_.descriptor->capabilities.bounding_spheres; }
-
-    World solids(std::mt19937_64& random) const {
-        return random_two_solids(random, plugin_.descriptor->capabilities.shape_kinds);
-    }
-
-    template <class CheckWorld>
-    void for_each_world(CheckWorld&& check) const {
-        std::mt19937_64 random(options_.seed);
-        for (int round = 0; round < 150; ++round) check(solids(random));
-    }
-
-    // Many bodies of all kinds close together.
-    World crowd() const {
-        std::mt19937_64 random(options_.seed);
-        World world = solids(random);
-        for (int round = 0; round < 20; ++round) {
-            const World more = solids(random);
-            const auto first_shape = static_cast<std::uint32_t>(world.shapes.size());
-            world.shapes.insert(world.shapes.end(), more.shapes.begin(), more.shapes.end());
-            for (std::uint32_t body = 0; body < more.size(); ++body) {
-                BodyDescription description;
-                description.shape = first_shape + more.shape[body];
-                description.is_static = more.is_static[body];
-                description.mass = 1;
-                description.position = more.model_position(body);
-                description.orientation = more.model_orientation(body);
-                world.add(description);
-            }
-        }
-        return world;
-    }
-
-    static std::vector<Pair> all_pairs(const World& world) {
-        std::vector<Pair> pairs;
-        for (std::uint32_t a = 0; a < world.size(); ++a)
-            for (std::uint32_t b = a + 1; b < world.size(); ++b)
-                if (!world.is_static[a] || !world.is_static[b]) pairs.push_back({a, b});
-        return pairs;
-    }
-
-    StagePtr<Narrowphase> make(Host& host, const World& world) const {
-        auto stage = library_.make<Narrowphase>(default_config(plugin_), host);
-        stage->prepare(world);
-        return stage;
-    }
-
-    Detail gives() const {
-        const auto host = make_host(1);
-        return library_.make<Narrowphase>(default_config(plugin_), *host)->gives();
-    }
-
-    static Contacts find(Narrowphase& stage, const World& world, const std::vector<Pair>& pairs, Detail detail) {
-        const std::vector<Detail> details(pairs.size(), detail);
-        Contacts contacts;
-        stage.find_contacts({world, pairs, details}, contacts);
-        return contacts;
-    }
-
-    Contacts find(const World& world, const std::vector<Pair>& pairs, Detail detail, int threads = 1) const {
-        const auto host = make_host(threads);
-        return find(*make(*host, world), world, pairs, detail);
-    }
-
-    Contacts find_pair(const World& world, Detail detail) const { return find(world, {{0, 1}}, detail); }
-
-    const PluginLibrary& library_;
-    const LoadedPlugin& plugin_;
-    const ConformanceOptions& options_;
 };
 
 }  // namespace
@@ -288,6 +184,7 @@ std::vector<Check> check_narrowphase(const PluginLibrary& library, const LoadedP
     suite.run("poses that are not finite are refused", [&] { checks.refuses_what_is_not_finite(); });
     suite.run("warm calls allocate nothing", [&] { checks.warm_calls_allocate_nothing(); });
     check_impact_times(library, plugin, options, suite);
+    check_metamorphic_narrowphase(library, plugin, options, suite);
     return suite.take();
 }
 

@@ -1,23 +1,11 @@
-#include "impacts.h"
-#include "suite.h"
-
-#include <kolize/simulation.h>
+#include "metamorphic.h"
+#include "response_under_test.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace kolize {
 
 namespace {
-
-struct Answer {
-    ImpactScene scene;  // after the response
-    std::vector<Event> events;
-    double dissipated_J = 0;
-    std::uint64_t unresolved = 0;
-};
-
-bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(a.data(), b.data(), sizeof(Vec3)) == 0; }
 
 double kinetic_energy(const World& world) {
     double energy = 0;
@@ -31,22 +19,10 @@ std::vector<std::uint8_t> touched_bodies(const ImpactScene& scene) {
     return touched;
 }
 
-[[noreturn]] void violate(const std::string& what, const ImpactScene& scene) {
-    throw Violation(what + ": " + to_text(scene));
-}
-
-void expect_same(const World& got, const World& expected, const std::string& what, const ImpactScene& scene) {
-    for (std::size_t i = 0; i < got.size(); ++i)
-        if (!same_bits(got.velocity[i], expected.velocity[i]) ||
-            !same_bits(got.angular_velocity[i], expected.angular_velocity[i]))
-            violate(what + ": body " + std::to_string(i) + " moves otherwise", scene);
-}
-
 // The plugin under test; the checks are its member functions.
-class ResponseChecks {
+class ResponseChecks : ResponseUnderTest {
 public:
-    ResponseChecks(const PluginLibrary& library, const LoadedPlugin& plugin, const ConformanceOptions& options)
-        : library_(library), plugin_(plugin), options_(options) {}
+    using ResponseUnderTest::ResponseUnderTest;
 
     void nothing_to_answer() const {
         const ImpactScene scene = impacts(0, 1, options_.seed);
@@ -252,6 +228,7 @@ public:
     }
 
     void warm_calls_allocate_nothing() const {
+        if (capabilities().allocates) throw Inapplicable("it declares that its calls allocate");
         if (!options_.allocations) throw Inapplicable("this program does not count allocations");
         const auto host = make_host(1);
         const auto stage = make(*host);
@@ -271,14 +248,6 @@ public:
     }
 
 private:
-    const Capabilities& capabilities() const { return plugin_.descriptor->capabilities; }
-
-    StagePtr<Response> make(Host& host) const { return library_.make<Response>(default_config(plugin_), host); }
-
-    ImpactScene impacts(std::size_t count, double restitution, std::uint64_t seed) const {
-        return random_impacts(count, plugin_.descriptor->capabilities.uses, restitution, seed);
-    }
-
     // With this for the depth of all contacts.
     ImpactScene settling(std::size_t count, double restitution, std::uint64_t seed, double depth) const {
         ImpactScene scene = impacts(count, restitution, seed);
@@ -288,15 +257,8 @@ private:
 
     // As far as the plugin models it: without rotation where bodies count as spheres.
     double normal_velocity(const World& world, const Contact& c) const {
-        if (plugin_.descriptor->capabilities.bounding_spheres)
-            return c.normal.dot(world.velocity[c.b] - world.velocity[c.a]);
+        if (capabilities().bounding_spheres) return c.normal.dot(world.velocity[c.b] - world.velocity[c.a]);
         return c.normal.dot(world.velocity_at(c.b, c.arm_b) - world.velocity_at(c.a, c.arm_a));
-    }
-
-    // The body's velocities, to rounding.
-    static bool close(const World& world, std::uint32_t body, const Vec3& velocity, const Vec3& angular_velocity) {
-        return (world.velocity[body] - velocity).norm() <= 1e-12 * (1 + velocity.norm()) &&
-               (world.angular_velocity[body] - angular_velocity).norm() <= 1e-12 * (1 + angular_velocity.norm());
     }
 
     // Ascending.
@@ -307,31 +269,6 @@ private:
         std::sort(bodies.begin(), bodies.end());
         return bodies;
     }
-
-    static Answer respond(Response& stage, const ImpactScene& scene, double settle = 0) {
-        Answer answer{scene, {}, 0, 0};
-        ResponseOutput output{answer.events};
-        stage.respond({answer.scene.contacts, answer.scene.hit, 0.01, settle}, answer.scene.world, output);
-        answer.dissipated_J = output.dissipated_J;
-        answer.unresolved = output.unresolved;
-        return answer;
-    }
-
-    Answer respond(const ImpactScene& scene, double settle = 0) const {
-        const auto host = make_host(1);
-        return respond(*make(*host), scene, settle);
-    }
-
-    template <class CheckScene>
-    void for_each_scene(CheckScene&& check) const {
-        for (std::uint64_t seed = options_.seed; seed < options_.seed + 5; ++seed)
-            for (const std::size_t count : {1, 2, 5, 20})
-                for (const double restitution : {1.0, 0.5, 0.0}) check(impacts(count, restitution, seed));
-    }
-
-    const PluginLibrary& library_;
-    const LoadedPlugin& plugin_;
-    const ConformanceOptions& options_;
 };
 
 }  // namespace
@@ -354,6 +291,7 @@ std::vector<Check> check_response(const PluginLibrary& library, const LoadedPlug
     suite.run("bodies that settle keep their gaps", [&] { checks.settling_bodies_keep_their_gaps(); });
     suite.run("finite input, finite output", [&] { checks.finite_stays_finite(); });
     suite.run("warm calls allocate nothing", [&] { checks.warm_calls_allocate_nothing(); });
+    check_metamorphic_response(library, plugin, options, suite);
     return suite.take();
 }
 

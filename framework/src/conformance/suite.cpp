@@ -19,6 +19,20 @@ const char* word(Check::Outcome outcome) {
 
 }  // namespace
 
+std::vector<Value> values_to_try(const Parameter& parameter) {
+    std::vector<Value> values{parameter.default_value};
+    for (const std::string& choice : parameter.choices) values.push_back(choice);
+    if (std::holds_alternative<bool>(parameter.default_value)) values = {false, true};
+    constexpr double most = std::numeric_limits<double>::max();
+    for (const double end : {parameter.min, parameter.max}) {
+        if (end == -most || end == most) continue;
+        if (std::holds_alternative<double>(parameter.default_value)) values.push_back(end);
+        if (std::holds_alternative<std::int64_t>(parameter.default_value))
+            values.push_back(static_cast<std::int64_t>(end));
+    }
+    return values;
+}
+
 void Suite::run(const char* name, const std::function<void()>& check) {
     Check& result = checks_.emplace_back(Check{name, Check::Outcome::pass, ""});
     try {

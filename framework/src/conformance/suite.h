@@ -26,6 +26,9 @@ inline StageConfig default_config(const LoadedPlugin& plugin) {
     return config;
 }
 
+// The default, every choice, and the ends of the range.
+std::vector<Value> values_to_try(const Parameter& parameter);
+
 class Suite {
 public:
     // Runs `check` and notes how it ended. Any exception but Inapplicable is a failure.

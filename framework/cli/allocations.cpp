@@ -1,4 +1,4 @@
-#include "oracle/allocation_counter.h"
+#include "allocations.h"
 
 #include <atomic>
 #include <cstdlib>

@@ -8,10 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace oracle {
-
-using kolize::TrianglePair;
-using kolize::Vec3;
+namespace kolize {
 
 class PairMaker {
 public:
@@ -65,7 +62,7 @@ public:
     }
     TrianglePair nearly_in_one_plane() {
         const double off = power_of_ten(-1, -16);
-        const kolize::Mat3 turn = any_rotation();
+        const Mat3 turn = any_rotation();
         TrianglePair pair = random();
         for (int k = 0; k < 3; ++k) {
             pair.a[k].z() = 0;
@@ -130,10 +127,10 @@ private:
         return Vec3(x - 16, y - 16, z - 16) * 4;
     }
     double power_of_ten(int from, int to) { return std::pow(10.0, from + (to - from) * (1 + uniform()) / 2); }
-    kolize::Mat3 any_rotation() {
+    Mat3 any_rotation() {
         std::normal_distribution<double> normal;
         const double w = normal(random_), x = normal(random_), y = normal(random_), z = normal(random_);
-        return kolize::Quat(w, x, y, z).normalized().toRotationMatrix();
+        return Quat(w, x, y, z).normalized().toRotationMatrix();
     }
     TrianglePair on_grid() {
         TrianglePair pair;
@@ -179,4 +176,11 @@ inline const std::vector<TriangleFamily>& triangle_families() {
     return families;
 }
 
-}  // namespace oracle
+inline std::vector<TrianglePair> triangle_pairs(const TriangleFamily& family, int count, std::uint64_t seed) {
+    PairMaker maker(seed);
+    std::vector<TrianglePair> pairs;
+    for (int i = 0; i < count; ++i) pairs.push_back((maker.*family.make)());
+    return pairs;
+}
+
+}  // namespace kolize
