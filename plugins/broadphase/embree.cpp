@@ -25,8 +25,10 @@ using Scene = std::unique_ptr<RTCSceneTy, Release>;
 
 // Embree drops boxes beyond 1.8e18. Where all coordinates are cut off alike, boxes that overlap still do.
 float within_range(double x) { return static_cast<float>(std::clamp(x, -1e18, 1e18)); }
-float round_down(double x) { return std::nextafter(within_range(x), -1e19f); }
-float round_up(double x) { return std::nextafter(within_range(x), 1e19f); }
+// It computes without the smallest floats, and boxes must not be flat for it.
+constexpr float least = 1e-30f;
+float round_down(double x) { return std::nextafter(within_range(x) - least, -1e19f); }
+float round_up(double x) { return std::nextafter(within_range(x) + least, 1e19f); }
 
 // Some rows of the input as Embree sees them.
 class BoxScene {
@@ -93,10 +95,12 @@ public:
         } else if (!moving_.empty()) {
             moving_.refit(input.bounds);
         }
-        bounds_ = input.bounds;
-        pairs_ = &pairs;
+        candidates_.clear();
         if (!moving_.empty()) find_between(moving_);
         if (!moving_.empty() && !static_.empty()) find_between(static_);
+        // Not in Embree's call: there the processor takes the smallest numbers for 0.
+        for (const Pair& pair : candidates_)
+            if (input.bounds[pair.a].overlaps(input.bounds[pair.b])) pairs.push_back(pair);
     }
 
 private:
@@ -112,17 +116,15 @@ private:
         for (unsigned i = 0; i < count; ++i) {
             const std::uint32_t a = self.moving_.rows[collisions[i].primID0];
             const std::uint32_t b = self.other_->rows[collisions[i].primID1];
-            if (self.other_ == &self.moving_ && a >= b) continue;
-            if (self.bounds_[a].overlaps(self.bounds_[b])) self.pairs_->push_back({std::min(a, b), std::max(a, b)});
+            if (self.other_ == &self.static_ || a < b) self.candidates_.push_back({std::min(a, b), std::max(a, b)});
         }
     }
 
     Device device_;
     BoxScene moving_, static_;
     std::uint64_t generation_ = 0;
-    std::span<const Aabb> bounds_;
     const BoxScene* other_ = nullptr;
-    std::vector<Pair>* pairs_ = nullptr;
+    std::vector<Pair> candidates_;
     std::mutex mutex_;
 };
 

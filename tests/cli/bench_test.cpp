@@ -81,7 +81,7 @@ TEST_CASE("bench broadphase compares the pairs of its variants", "[cli]") {
     const json result = json::parse(shell.kolize("bench broadphase boxes.csv --repeat 1 --json -").out);
     CHECK(result["stage"] == "broadphase");
     CHECK(result["boxes"] == 3);
-    REQUIRE(result["variants"].size() == 6);
+    REQUIRE(result["variants"].size() >= 6);  // every broadphase
     for (const json& variant : result["variants"]) {
         CHECK(variant["pairs"] == json::array({1}));
         CHECK(variant["same_pairs"] == true);
