@@ -28,7 +28,7 @@ void require_agreement(const std::vector<Aabb>& bounds) {
     const std::vector<Pair> pairs = find_pairs(library, "grid", bounds);
     CAPTURE(seed, pairs.size());
     REQUIRE(pairs.size() > 100);
-    for (const char* other : {"bsp", "regions", "sphere_hierarchy", "sweep_and_prune"}) {
+    for (const char* other : {"bsp", "regions", "sphere_hierarchy", "sweep_and_prune", "tetrahedral"}) {
         CAPTURE(other);
         CHECK(find_pairs(library, other, bounds) == pairs);
     }

@@ -116,6 +116,9 @@ const std::vector<Subject>& subjects() {
         {"regions", {}},
         {"sweep_and_prune", {{"method", {std::string("scratch"), {}}}}},
         {"sweep_and_prune", {{"method", {std::string("incremental"), {}}}}},
+        {"tetrahedral", {}},
+        {"tetrahedral", {{"max_cells", {std::int64_t{4}, {}}}}},
+        {"tetrahedral", {{"max_points", {std::int64_t{10}, {}}}}},
     };
     return subjects;
 }
