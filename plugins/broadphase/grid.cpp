@@ -270,8 +270,8 @@ KOLIZE_PLUGIN(
     Grid, .name = "grid", .summary = "uniform grid, one level for each range of sizes",
     .source = "Ericson, Real-Time Collision Detection (2005), 7.1-7.2",
     .cost =
-        "O(N + pairs) for boxes of similar size, times the number of levels when sizes differ; 60 bytes a box and four "
-        "4-byte cells a box. Nothing is kept between steps, so fast motion costs no more than slow.",
+        "O(N + pairs) for boxes of similar size, times the number of levels when sizes differ; about 200 bytes a box. "
+        "When less than a quarter of the boxes have moved, only these are filed and looked for anew.",
     .accuracy = "Exact: a pair is reported if and only if its closed boxes overlap.",
     .choose =
         "Almost always. Where many boxes are long and thin, so that cells as large as the boxes are long hold many of "
