@@ -66,7 +66,7 @@ Json to_json(const CertificateState& state) {
     return {{"state", "valid"}, {"pass", state.passed}, {"skip", state.skipped}};
 }
 
-void write_certificate(const LoadedPlugin& plugin, const std::vector<Check>& checks,
+void write_certificate(const LoadedPlugin& plugin, const std::vector<Check>& checks, std::uint64_t seed,
                        const std::filesystem::path& file) {
     std::error_code error;
     if (std::filesystem::equivalent(file, plugin.file, error))
@@ -82,7 +82,7 @@ void write_certificate(const LoadedPlugin& plugin, const std::vector<Check>& che
                 {"compiler", host.at("compiler")},
                 {"build_type", host.at("build_type")},
                 {"library", {{"file", plugin.file.filename().string()}, {"fnv1a64", hash_of(plugin.file)}}},
-                {"seed", ConformanceOptions().seed},
+                {"seed", seed},
                 {"totals",
                  {{"pass", count(checks, Check::Outcome::pass)},
                   {"fail", count(checks, Check::Outcome::fail)},

@@ -18,6 +18,7 @@ struct PluginOptions {
     std::string json;
     std::string name;
     std::string certificate;
+    std::uint64_t seed = 1;
 };
 
 constexpr const char* beside = "beside the library";  // where the certificate goes if no path is given
@@ -175,7 +176,7 @@ int test(const PluginOptions& options) {
     const std::filesystem::path file = std::filesystem::absolute(options.name);
     const PluginLibrary library({file.parent_path()});
     const LoadedPlugin& plugin = plugin_in(library, file);
-    const std::vector<Check> checks = hold_to_contract(library, plugin);
+    const std::vector<Check> checks = hold_to_contract(library, plugin, options.seed);
     if (options.json != "-") print_matrix(std::cout, {{plugin.descriptor->name, checks}});
     Json rows = Json::array();
     for (const Check& check : checks)
@@ -183,9 +184,9 @@ int test(const PluginOptions& options) {
     if (!options.json.empty()) write_json({{"plugin", plugin_json(plugin)}, {"checks", rows}}, options.json);
     if (!passed(checks)) return 1;
     if (options.certificate == beside)
-        write_certificate(plugin, checks, certificate_path(plugin.file));
+        write_certificate(plugin, checks, options.seed, certificate_path(plugin.file));
     else if (!options.certificate.empty())
-        write_certificate(plugin, checks, options.certificate);
+        write_certificate(plugin, checks, options.seed, options.certificate);
     return 0;
 }
 
@@ -225,9 +226,10 @@ const char* word(Check::Outcome outcome) {
     return words[static_cast<std::size_t>(outcome)];
 }
 
-std::vector<Check> hold_to_contract(const PluginLibrary& library, const LoadedPlugin& plugin) {
+std::vector<Check> hold_to_contract(const PluginLibrary& library, const LoadedPlugin& plugin, std::uint64_t seed) {
     const AllocationCounter counter;
     ConformanceOptions options;
+    options.seed = seed;
     if (AllocationCounter::available()) options.allocations = [&] { return counter.count(); };
     return check_plugin(library, plugin, options);
 }
@@ -259,6 +261,7 @@ void add_plugins(CLI::App& app, int& exit_code) {
                      "the library, as its name with .certificate.json")
         ->expected(0, 1)
         ->default_str(beside);
+    testing->add_option("--seed", options->seed, "Seed of all random input")->capture_default_str();
     testing->footer("Example: kolize plugins test build/my_broadphase.so");
     testing->callback([options, &exit_code] { exit_code = test(*options); });
 

@@ -20,7 +20,7 @@ std::string limits(const Parameter& parameter);
 const char* word(Check::Outcome outcome);
 
 // All checks of the plugin's stage, with allocations counted.
-std::vector<Check> hold_to_contract(const PluginLibrary& library, const LoadedPlugin& plugin);
+std::vector<Check> hold_to_contract(const PluginLibrary& library, const LoadedPlugin& plugin, std::uint64_t seed = 1);
 
 // --- Certificates: which checks a library has passed, for as long as it is the same file ----------------------------
 
@@ -40,7 +40,8 @@ std::string in_words(const CertificateState& state);
 Json to_json(const CertificateState& state);
 
 // Throws Error if the file cannot be written.
-void write_certificate(const LoadedPlugin& plugin, const std::vector<Check>& checks, const std::filesystem::path& file);
+void write_certificate(const LoadedPlugin& plugin, const std::vector<Check>& checks, std::uint64_t seed,
+                       const std::filesystem::path& file);
 
 // --- Reference pages ------------------------------------------------------------------------------------------------
 

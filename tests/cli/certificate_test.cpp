@@ -86,6 +86,12 @@ TEST_CASE("a certificate can be written elsewhere, the same bytes again", "[plug
     CHECK(one.shell.files() == 5);  // the library, two certificates, and what the program said: nothing half-written
 }
 
+TEST_CASE("checks can be made on other random input", "[plugins]") {
+    const OnePlugin one;
+    REQUIRE(one.certify("--seed 7").code == 0);
+    CHECK(one.certificate().at("seed") == 7);
+}
+
 TEST_CASE("a certificate that cannot be written is one sentence", "[plugins]") {
     const OnePlugin one;
     const std::string library = file_bytes(one.file("own.so"));

@@ -51,8 +51,8 @@ TEST_CASE("the program says its version and how it is used", "[cli]") {
     const Outcome version = shell.kolize("--version");
     CHECK(version.code == 0);
     CHECK(version.out.find("(plugin API " + std::to_string(kolize::plugin_api) + ")") != std::string::npos);
-    for (const std::string command :
-         {"run", "compare", "bench", "check", "plugins", "plugins list", "plugins show", "plugins test"}) {
+    for (const std::string command : {"run", "compare", "bench", "check", "plugins", "plugins list", "plugins show",
+                                      "plugins test", "plugins docs"}) {
         const Outcome help = shell.kolize(command + " --help");
         CAPTURE(command);
         CHECK(help.code == 0);
