@@ -13,7 +13,6 @@
 #include <kolize/plugin.h>
 
 #include <algorithm>
-#include <numeric>
 #include <random>
 
 namespace {
