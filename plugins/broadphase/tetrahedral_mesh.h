@@ -44,7 +44,8 @@ public:
     // was found if that is none: the nearer the sooner.
     std::uint32_t locate(const Vec3& p, std::uint32_t from = none) {
         std::uint32_t at = from == none ? latest_ : from, last = none;
-        // Without any order of the faces such a walk could go in circles; and if it goes on and on, all are looked at.
+        // The faces are tried in random order: in a fixed one a walk may go in circles. If it takes too long all the
+        // same, every tetrahedron is looked at.
         for (std::size_t step = 0; step < tetrahedra_.size(); ++step) {
             const std::uint32_t next = towards(p, at, last);
             if (next == none) return latest_ = at;
