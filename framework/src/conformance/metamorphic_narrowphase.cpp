@@ -123,11 +123,14 @@ public:
         });
     }
 
-    // Either it refuses, in a sentence, or what it gives is finite.
+    // Either it refuses, in a sentence, or what it gives is finite. Few pairs: most iterations without a tolerance take
+    // their time.
     void parameters() const {
         const World world = crowd();
+        std::vector<Pair> pairs;
+        for (std::uint32_t body = 0; body + 1 < world.size(); body += 2) pairs.push_back({body, body + 1});
         for_each_setting(world, [&](const std::string& what, Narrowphase& stage) {
-            for (const Contact& c : find(stage, world, all_pairs(world), stage.gives()).rows)
+            for (const Contact& c : find(stage, world, pairs, stage.gives()).rows)
                 if (!c.normal.allFinite() || !c.arm_a.allFinite() || !c.arm_b.allFinite() || !(c.depth >= 0))
                     throw Violation(what + ": a contact is not finite");
         });
