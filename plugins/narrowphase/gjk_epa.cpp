@@ -275,7 +275,7 @@ private:
             touch.point = first.support(touch.normal);
             touch.depth = touch.normal.dot(touch.point - second.position);
             touch.point -= 0.5 * touch.depth * touch.normal;
-            return touch.depth >= 0 ? Outcome::overlap : Outcome::apart;
+            return touch.depth > 0 ? Outcome::overlap : Outcome::apart;
         }
         Solid a = first, b = second;
         a.is_core = b.is_core = true;
@@ -287,7 +287,7 @@ private:
             touch.depth = radii - distance;
             touch.normal = nearest.between() / distance;
             touch.point = nearest.a + (a.radius() - 0.5 * touch.depth) * touch.normal;
-            return touch.depth >= 0 ? Outcome::overlap : Outcome::apart;
+            return touch.depth > 0 ? Outcome::overlap : Outcome::apart;
         }
         // The difference of two points or segments has no inside.
         const bool solid = first.radius() == 0 || second.radius() == 0;
@@ -311,7 +311,8 @@ private:
             return Outcome::failure;
         touch.normal.normalize();
         touch.depth = touch.normal.dot(first.support(touch.normal) - second.support(-touch.normal));
-        if (!(touch.depth >= 0 && std::abs(a.is_core ? 0 : touch.depth - depth) < 0.1)) return Outcome::failure;
+        if (std::abs(touch.depth) < 1e-12) return Outcome::apart;  // they touch
+        if (!(touch.depth > 0 && std::abs(a.is_core ? 0 : touch.depth - depth) < 0.1)) return Outcome::failure;
         Solid moved = second;
         constexpr double gap = 0.1;
         moved.position += (touch.depth + gap) * touch.normal;
@@ -327,7 +328,7 @@ private:
             return place_volume(*solid.bounds, solid.position / solid.scale, solid.rotation);
         };
         const auto found = volume_contact(placed(first), placed(second));
-        if (!found) return Outcome::apart;
+        if (!found || !(found->depth > 0)) return Outcome::apart;
         touch = {found->normal, first.scale * found->point, first.scale * found->depth};
         return Outcome::overlap;
     }

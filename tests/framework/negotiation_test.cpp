@@ -64,7 +64,7 @@ TEST_CASE("a response that needs more than the narrowphase gives is refused, nam
     CHECK(refusal(scene, library) ==
           "scene.toml:3:10: response 'impulse' needs normal, but narrowphase 'overlap_only' as configured gives only "
           "overlap; "
-          "these would do: angle_sum, bounding_volume, embree, exact, fcl, gjk_epa, guigue_devillers, moller");
+          "these would do: angle_sum, bounding_volume, embree, exact, fcl, gjk_epa, guigue_devillers, moller, sat");
     scene.pipeline.responses = {{stage("explode"), {}}};
     CHECK(refusal(scene, library).empty());
 }
@@ -80,7 +80,7 @@ TEST_CASE("a shape that the narrowphase does not take is refused, naming plugins
     scene.world.add(box);
     CHECK(refusal(scene, library) ==
           "scene.toml:3:10: narrowphase 'overlap_only' does not take shapes of kind box (body 'crate'); "
-          "these would do: angle_sum, bounding_volume, embree, exact, fcl, gjk_epa, guigue_devillers, moller");
+          "these would do: angle_sum, bounding_volume, embree, exact, fcl, gjk_epa, guigue_devillers, moller, sat");
 }
 
 TEST_CASE("a wall shape that the narrowphase does not take is refused by name", "[negotiation]") {
