@@ -60,13 +60,14 @@ struct CubicSpace {
 
     // The cells of a tree that have something in them, as high as all boxes where they have no height of their own.
     static void outline(const BoxTree<CubicSpace>& tree, Outline& outline, std::span<const int> flat_axes) {
+        const Aabb all = tree.nodes()[0].below.box();
         for (const auto& node : tree.nodes()) {
-            if (!node.below.finite()) continue;
+            if (!node.below.box().finite()) continue;
             Aabb box{node.cell.center - Vec3::Constant(node.cell.half),
                      node.cell.center + Vec3::Constant(node.cell.half)};
             for (const int axis : flat_axes) {
-                box.min[axis] = tree.nodes()[0].below.min[axis];
-                box.max[axis] = tree.nodes()[0].below.max[axis];
+                box.min[axis] = all.min[axis];
+                box.max[axis] = all.max[axis];
             }
             if (box.finite()) outline.boxes.push_back({box, node.level});
         }

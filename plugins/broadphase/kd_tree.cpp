@@ -25,11 +25,11 @@ struct KdSpace {
     // Of the centres of a few boxes; a plane that leaves most of them across it is of no use.
     template <class NextBox>
     bool divide(Cell& cell, std::uint32_t all, NextBox&& next_box) const {
-        const Aabb* boxes[most_samples];
+        Aabb boxes[most_samples];
         int count = 0;
         for (std::uint32_t i = 0; i < all; ++i) {
-            const Aabb& box = next_box();
-            if (all <= most_samples || i % (all / most_samples) == 0) boxes[count++] = &box;
+            const Aabb box = next_box();
+            if (all <= most_samples || i % (all / most_samples) == 0) boxes[count++] = box;
             if (count == most_samples) break;
         }
         int best = count / 2;
@@ -38,7 +38,7 @@ struct KdSpace {
             const Cell plane{axis, median(boxes, count, axis)};
             int across = 0, below = 0;
             for (int i = 0; i < count; ++i) {
-                const int child = child_of(plane, *boxes[i]);
+                const int child = child_of(plane, boxes[i]);
                 across += child < 0;
                 below += child == 0;
             }
@@ -58,9 +58,9 @@ struct KdSpace {
 private:
     static constexpr int most_samples = 64;
 
-    static double median(const Aabb* const* boxes, int count, int axis) {
+    static double median(const Aabb* boxes, int count, int axis) {
         double centers[most_samples];
-        for (int i = 0; i < count; ++i) centers[i] = 0.5 * boxes[i]->min[axis] + 0.5 * boxes[i]->max[axis];
+        for (int i = 0; i < count; ++i) centers[i] = 0.5 * boxes[i].min[axis] + 0.5 * boxes[i].max[axis];
         std::nth_element(centers, centers + count / 2, centers + count);
         return centers[count / 2];
     }
@@ -76,8 +76,8 @@ public:
         find_pairs(input, ignored);
         for (const auto* tree : {&static_tree(), &moving_tree()})
             for (const auto& node : tree->nodes()) {
-                if (node.first_child == tree->none || !node.below.finite()) continue;
-                Aabb plane = node.below;
+                Aabb plane = node.below.box();
+                if (node.first_child == tree->none || !plane.finite()) continue;
                 plane.min[node.cell.axis] = plane.max[node.cell.axis] = node.cell.at;
                 outline.boxes.push_back({plane, node.level});
             }
