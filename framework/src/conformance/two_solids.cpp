@@ -2,6 +2,7 @@
 
 #include "mesh_contacts.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace kolize {
@@ -26,11 +27,18 @@ TriangleSoup l_prism() {
     return soup;
 }
 
+// A crooked pyramid with its top cut off.
+std::vector<Vec3> corners_of_hull() {
+    return {{-0.8, -0.5, -0.7}, {0.9, -0.5, -0.6}, {0.7, -0.6, 0.8}, {-0.6, -0.4, 0.9},
+            {-0.3, 0.6, -0.2},  {0.4, 0.7, -0.1},  {0.1, 0.5, 0.4}};
+}
+
 Shape shape_of_kind(ShapeKind kind) {
     switch (kind) {
     case ShapeKind::sphere: return make_sphere("sphere", 0.8);
     case ShapeKind::box: return make_box("box", Vec3(0.9, 0.6, 0.5));
     case ShapeKind::half_space: return make_half_space("half_space", Vec3(0, 1, 0), 0.1);
+    case ShapeKind::hull: return make_hull("hull", corners_of_hull());
     default: return make_mesh("l_prism", l_prism());
     }
 }
@@ -59,9 +67,13 @@ World random_two_solids(std::mt19937_64& random, std::uint32_t shape_kinds) {
     std::vector<ShapeKind> kinds;
     for (const ShapeKind kind : {ShapeKind::sphere, ShapeKind::box, ShapeKind::half_space, ShapeKind::mesh})
         if (shape_kinds & bit(kind)) kinds.push_back(kind);
+    // Who takes meshes takes a hull for one.
+    if (shape_kinds & bit(ShapeKind::hull) && !(shape_kinds & bit(ShapeKind::mesh))) kinds.push_back(ShapeKind::hull);
     const ShapeKind first = kinds[random() % kinds.size()];
     ShapeKind second = kinds[random() % kinds.size()];
-    if (first == ShapeKind::half_space && second == first) second = ShapeKind::sphere;
+    if (first == ShapeKind::half_space && second == first)  // two static ones are no pair
+        second =
+            *std::find_if(kinds.begin(), kinds.end(), [](ShapeKind kind) { return kind != ShapeKind::half_space; });
     std::uniform_real_distribution<double> coordinate(-1.5, 1.5);
     const auto vector = [&] { return Vec3(coordinate(random), coordinate(random), coordinate(random)); };
     World world;
