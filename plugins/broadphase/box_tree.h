@@ -16,7 +16,6 @@
 #include <emmintrin.h>
 
 #include <algorithm>
-#include <array>
 #include <functional>
 
 namespace kolize {
@@ -185,13 +184,15 @@ private:
     template <class Visit>
     void search_between(std::uint32_t a, std::uint32_t b, Visit&& visit) const {
         const Node &x = nodes_[a], &y = nodes_[b];
-        if (!x.below.meets(y.below.probe())) return;
+        const Bounds probe = y.below.probe();
+        if (!x.below.meets(probe)) return;
         search_own(x, b, visit);
         if (x.first_child == none) return;
-        for (std::uint32_t i = 0; i < Space::children; ++i) {
-            search_own(y, x.first_child + i, visit);
+        for (std::uint32_t child = x.first_child; child < x.first_child + Space::children; ++child) {
+            if (!nodes_[child].below.meets(probe)) continue;
+            search_own(y, child, visit);
             for (std::uint32_t j = 0; y.first_child != none && j < Space::children; ++j)
-                search_between(x.first_child + i, y.first_child + j, visit);
+                search_between(child, y.first_child + j, visit);
         }
     }
 
