@@ -89,7 +89,7 @@ bool ComplementarityProblem::solve() {
 bool ComplementarityProblem::descend() {
     for (std::size_t i = 0; i < size_; ++i) pushes_[i] = kind_[i] == Kind::holds || start_[i] > 0;
     barred_.assign(size_, 0);
-    for (std::size_t round = 0; round < 20 + 10 * size_; ++round) {
+    for (std::size_t round = 0; round < 20 + size_; ++round) {
         solve_chosen();
         if (step_back()) continue;
         start_ = lambda_;

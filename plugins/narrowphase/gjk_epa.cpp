@@ -312,7 +312,10 @@ private:
         touch.normal.normalize();
         touch.depth = touch.normal.dot(first.support(touch.normal) - second.support(-touch.normal));
         if (std::abs(touch.depth) < 1e-12) return Outcome::apart;  // they touch
-        if (!(touch.depth > 0 && std::abs(a.is_core ? 0 : touch.depth - depth) < 0.1)) return Outcome::failure;
+        // EPA's depth is that of the plane it has found, or it has found none.
+        const double round = a.is_core ? first.radius() + second.radius() : 0;
+        if (!(touch.depth > 0) || (method_ == "epa" && !(std::abs(touch.depth - depth - round) < 1e-3)))
+            return Outcome::failure;
         Solid moved = second;
         constexpr double gap = 0.1;
         moved.position += (touch.depth + gap) * touch.normal;

@@ -235,6 +235,7 @@ private:
         next_memory_.reserve(32 * world_size);
         slow_for_.reserve(world_size);
         axes_.reserve(3 * static_cast<std::size_t>(direct_rows_));
+        kept_.reserve(static_cast<std::size_t>(direct_rows_));
         problem_.reserve(3 * static_cast<std::size_t>(direct_rows_));
     }
 
@@ -353,11 +354,34 @@ private:
     void solve(const Island& island) {
         const double enough = tolerance_ * fastest_;
         if (sweep(island) <= enough) return;
-        if (island.direct && island.end - island.begin > 1) solve_directly(island, enough);
-        // Impacts know no last step to begin with: they get the passes of many.
-        const int most = overlaps_ ? iterations_ : 100 * iterations_;
+        // Impacts know no last step to begin with, and what has no direct answer has not converged: they get many
+        // passes.
+        int most = overlaps_ ? iterations_ : 100 * iterations_;
+        if (island.direct && island.end - island.begin > 1) {
+            keep(island);
+            if (!solve_directly(island, enough)) {
+                put_back(island);
+                most = std::max(most, 10 * iterations_);
+            }
+        }
         for (int i = 1; i < most; ++i)
             if (sweep(island) <= enough) return;
+    }
+
+    // Half an answer of the direct method may be far worse than none.
+    void keep(const Island& island) {
+        kept_.clear();
+        for (const Row& row : rows_of(island))
+            kept_.push_back({row.lambda, row.lambda_t, {bodies_[row.a], bodies_[row.b]}});
+    }
+    void put_back(const Island& island) {
+        for (std::uint32_t i = island.begin; i < island.end; ++i) {
+            const Kept& kept = kept_[i - island.begin];
+            rows_[i].lambda = kept.lambda;
+            rows_[i].lambda_t = kept.lambda_t;
+            bodies_[rows_[i].a] = kept.bodies[0];
+            bodies_[rows_[i].b] = kept.bodies[1];
+        }
     }
 
     // One pass of Gauss-Seidel. Returns the largest change of velocity at a contact, m/s.
@@ -395,13 +419,16 @@ private:
     }
 
     // All impulses of the island at once. Friction sticks at first; where it leaves its cone it slides, as a given
-    // impulse on the cone's edge, until it would stick again. In turns, until no cone is left any more.
-    void solve_directly(const Island& island, double enough) {
+    // impulse on the cone's edge, until it would stick again. In turns, until no cone is left any more; false if that
+    // does not come to an end.
+    bool solve_directly(const Island& island, double enough) {
         load_problem(island);
         for (Row& row : rows_of(island)) row.sticks = row.friction > 0;
-        for (int turn = 0; turn < 16; ++turn) {
-            if (!solve_problem(island) || keep_to_cones(island, enough) <= enough) return;
+        for (int turn = 0; turn < 8; ++turn) {
+            if (!solve_problem(island)) return false;
+            if (keep_to_cones(island, enough) <= enough) return true;
         }
+        return false;
     }
 
     // Returns the largest change of velocity at a contact, m/s.
@@ -660,6 +687,12 @@ private:
     std::vector<Island> islands_;
     std::vector<Row> rows_;
     std::vector<Axis> axes_;  // the unknowns of problem_
+    struct Kept {
+        double lambda;
+        Vec2 lambda_t;
+        Moving bodies[2];
+    };
+    std::vector<Kept> kept_;  // of an island, before it is solved directly
     ComplementarityProblem problem_;
     bool overlaps_ = false;                     // a step to go through, not a time of impact
     double fastest_ = 0;                        // m/s
