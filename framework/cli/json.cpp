@@ -76,6 +76,7 @@ Json pipeline_json(const Simulation& simulation) {
             {"response", responses},
             {"step",
              {{"dt", step.dt},
+              {"substeps", step.substeps},
               {"mode", step.mode},
               {"integrator", step.integrator},
               {"tolerance", step.tolerance},

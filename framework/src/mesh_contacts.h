@@ -25,6 +25,9 @@ struct MeshScratch {
     std::vector<SurfacePoint> candidates;
     std::vector<std::uint32_t> parent;  // union-find over vertices
     std::vector<Vec3> points;
+    std::vector<std::uint32_t> triangles, edges, vertices;  // near a capsule
+    std::vector<double> crossings;                          // along a capsule's core
+    std::vector<ContactRegion> regions;                     // of one end of it
 };
 
 // The point of a closed surface nearest to p, and on which side of the surface p lies.

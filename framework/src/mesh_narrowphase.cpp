@@ -1,5 +1,6 @@
 #include <kolize/mesh_narrowphase.h>
 
+#include "capsule_contacts.h"
 #include "contact_model/contact_model.h"
 #include "contact_model/containment.h"
 #include "mesh_contacts.h"
@@ -101,7 +102,7 @@ public:
     }
 
 private:
-    // Shape kinds ascending: sphere, box, half-space, mesh. Regions: world axes about the centre of `a`.
+    // Shape kinds ascending: sphere, box, half-space, mesh, capsule, hull. Regions: world axes about the centre of `a`.
     void collide_ordered(std::uint32_t a, std::uint32_t b) {
         const Shape &first = world_.shape_of(a), &second = world_.shape_of(b);
         const Vec3 offset = world_.position[b] - world_.position[a];
@@ -120,13 +121,44 @@ private:
                 return box_half_space(first.half_extents, rotation(a), normal, offset, regions);
             return;
         }
-        case ShapeKind::capsule: return;  // not taken: no pipeline has one
+        case ShapeKind::capsule: return collide_with_capsule(a, b);
         case ShapeKind::hull:
         case ShapeKind::mesh:
+            if (first.kind == ShapeKind::capsule) return collide_capsule_mesh(a, b);
             if (first.kind == ShapeKind::sphere) return collide_sphere_mesh(a, b);
             if (first.kind == ShapeKind::half_space) return collide_half_space_mesh(a, b);
             return collide_meshes(a, b);
         }
+    }
+
+    void collide_with_capsule(std::uint32_t a, std::uint32_t capsule) {
+        const Shape &first = world_.shape_of(a), &second = world_.shape_of(capsule);
+        const Vec3 offset = world_.position[capsule] - world_.position[a];
+        const Segment core = capsule_core(second, offset, world_.orientation[capsule]);
+        if (first.kind == ShapeKind::sphere)
+            return sphere_capsule(first.radius, core, second.cap_radius, work_.regions);
+        if (first.kind == ShapeKind::capsule)
+            return capsule_capsule(capsule_core(first, Vec3::Zero(), world_.orientation[a]), first.cap_radius, core,
+                                   second.cap_radius, work_.regions);
+        if (first.kind == ShapeKind::half_space) {
+            const Vec3 normal = world_.orientation[a] * first.normal;
+            capsule_half_space(capsule_core(second, Vec3::Zero(), world_.orientation[capsule]), second.cap_radius,
+                               normal, -normal.dot(offset), work_.regions);
+        } else {
+            collide_capsule_mesh(capsule, a);
+        }
+        swap_regions(capsule, a);
+    }
+
+    // A box is its twelve triangles.
+    void collide_capsule_mesh(std::uint32_t capsule, std::uint32_t mesh) {
+        const Quat to_mesh = world_.orientation[mesh].conjugate();
+        const Segment core =
+            capsule_core(world_.shape_of(capsule), to_mesh * (world_.position[capsule] - world_.position[mesh]),
+                         to_mesh * world_.orientation[capsule]);
+        mesh_capsule(*world_.shape_of(mesh).mesh, core, world_.shape_of(capsule).cap_radius, work_.mesh, work_.regions);
+        rotate_all(world_.orientation[mesh].toRotationMatrix());
+        swap_regions(mesh, capsule);
     }
 
     void collide_sphere_mesh(std::uint32_t sphere, std::uint32_t mesh) {
@@ -282,6 +314,11 @@ void MeshNarrowphase::prepare(const World& world) {
         work->mesh.candidates.reserve(triangles);
         work->mesh.parent.reserve(vertices);
         work->mesh.points.reserve(vertices);
+        work->mesh.triangles.reserve(triangles);
+        work->mesh.edges.reserve(3 * triangles);
+        work->mesh.vertices.reserve(3 * triangles);
+        work->mesh.crossings.reserve(triangles);
+        work->mesh.regions.reserve(64);
         work->regions.reserve(64);
         work->contacts.rows.reserve(256);
     }

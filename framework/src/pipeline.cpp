@@ -126,7 +126,9 @@ void Pipeline::run_stage(StageKind kind, const char* plugin, Call&& call, Blame&
     const Phase phase = kind == StageKind::broadphase    ? Phase::broadphase
                         : kind == StageKind::narrowphase ? Phase::narrowphase
                                                          : Phase::response;
-    measure.clock.add(phase, StageClock::Clock::now() - start);
+    const auto end = StageClock::Clock::now();
+    measure.clock.add(phase, end - start);
+    if (!observers.empty()) show([&](Observer& o) { o.ended({to_string(kind), plugin, start, end}); });
     if (ledger && kind != StageKind::response) ledger->after_search(world, kind, plugin);
 }
 
@@ -152,7 +154,9 @@ void Pipeline::integrate(double dt) {
     for (std::uint32_t body = 0; watched && body < world.size(); ++body) before_.push_back(world.state(body));
     const auto start = StageClock::Clock::now();
     integrator_->advance(world, dt, host_);
-    measure.clock.add(Phase::integrate, StageClock::Clock::now() - start);
+    const auto end = StageClock::Clock::now();
+    measure.clock.add(Phase::integrate, end - start);
+    if (!observers.empty()) show([&](Observer& o) { o.ended({"integrate", integrator_name_.c_str(), start, end}); });
     for (std::uint32_t body = 0; body < world.size(); ++body) {
         if (world.is_static[body] || world.removed[body]) continue;
         const BodyState after = world.state(body);
@@ -189,6 +193,7 @@ void Pipeline::find_pairs() {
                                              " rows; a pair is two rows, the lower one first");
         },
         [] { return std::string(); });
+    if (!observers.empty()) show([&](Observer& o) { o.broadphase_found(broadphase_input(), found_); });
     pairs.clear();
     for (const Pair& pair : found_) pairs.push_back({rows_[pair.a], rows_[pair.b]});
     add_half_space_pairs();
@@ -263,6 +268,7 @@ void Pipeline::find_contacts() {
         require_fit(contact, any ? routed_[i] : Pair{}, any ? detail_[i] : Detail::overlap, false);
         contact.rule = rule_[i];
     }
+    if (!observers.empty()) show([&](Observer& o) { o.narrowphase_found({world, routed_, detail_}, false, contacts); });
     measure.contacts += contacts.rows.size();
     measure.triangle_tests += contacts.triangle_tests;
     measure.failures += contacts.failures;
@@ -295,12 +301,13 @@ void Pipeline::respond_with(Rule& rule, double dt, double settle) {
     const std::size_t first_event = events.size();
     ResponseOutput output{events};
     if (ledger && settle == 0) ledger->check_depths(rule.contacts, narrowphase_plugin->descriptor->name);
+    const ResponseInput input{rule.contacts, rule.hit, dt, settle};
+    const std::size_t number = static_cast<std::size_t>(&rule - rules.data());
+    if (!observers.empty()) show([&](Observer& o) { o.response_begins(number, input, world); });
     run_stage(
-        StageKind::response, plugin,
-        [&] {
-            rule.stage->respond({rule.contacts, rule.hit, dt, settle}, world, output);
-        },
+        StageKind::response, plugin, [&] { rule.stage->respond(input, world, output); },
         [&] { return blamed_pair(rule, dt); });
+    if (!observers.empty()) show([&](Observer& o) { o.response_ended(number, input, world); });
     require_finite_response(rule, output.dissipated_J, first_event);
     const bool moves = rule.plugin->descriptor->capabilities.moves;
     if (moves) swap_places(rule);  // impulses are accounted for where they were given
@@ -351,16 +358,18 @@ void Pipeline::find_impacts(std::span<const Pair> some_pairs, const Flow& flow, 
             narrowphase->find_impacts({world, flow, some_pairs, from, until}, times);
         },
         [] { return std::string(); });
+    if (!observers.empty())
+        show([&](Observer& o) { o.narrowphase_timed({world, flow, some_pairs, from, until}, times); });
     require_times(some_pairs, from, times);
 }
 
 bool Pipeline::add_contacts(std::size_t candidate, bool touching, double reach) {
     const Pair& pair = routed_[candidate];
+    const NarrowphaseInput input{world, {&pair, 1}, {&detail_[candidate], 1}, reach};
     one_pair_.clear();
     run_stage(
         StageKind::narrowphase, narrowphase_plugin->descriptor->name,
         [&] {
-            const NarrowphaseInput input{world, {&pair, 1}, {&detail_[candidate], 1}, reach};
             if (touching)
                 narrowphase->find_touching(input, one_pair_);
             else
@@ -372,6 +381,7 @@ bool Pipeline::add_contacts(std::size_t candidate, bool touching, double reach) 
         contact.rule = rule_[candidate];
         contacts.rows.push_back(contact);
     }
+    if (!observers.empty()) show([&](Observer& o) { o.narrowphase_found(input, touching, one_pair_); });
     measure.contacts += one_pair_.rows.size();
     measure.triangle_tests += one_pair_.triangle_tests;
     measure.failures += one_pair_.failures;

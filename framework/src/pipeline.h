@@ -5,7 +5,10 @@
 #include "ledger.h"
 #include "measure.h"
 
+#include <kolize/observer.h>
 #include <kolize/simulation.h>
+
+#include <utility>
 
 namespace kolize {
 
@@ -90,6 +93,16 @@ public:
     Measure measure;
     std::optional<Ledger> ledger;
 
+    // Lets whoever looks on see something; the time that takes is left out of the step's.
+    template <class Call>
+    void show(Call&& call) {
+        const auto start = StageClock::Clock::now();
+        for (Observer* observer : observers) call(*observer);
+        shown_ += StageClock::Clock::now() - start;
+    }
+    StageClock::Clock::duration take_time_shown() { return std::exchange(shown_, {}); }
+    std::vector<Observer*> observers;
+
     const LoadedPlugin* broadphase_plugin;
     const LoadedPlugin* narrowphase_plugin;
     StagePtr<Broadphase> broadphase;
@@ -157,6 +170,7 @@ private:
     std::vector<std::uint32_t> rule_;  // by routed pair
     std::optional<Cull> cull_;
     Contacts one_pair_;
+    StageClock::Clock::duration shown_{};
     std::vector<std::uint8_t> is_partner_;  // by body
     std::vector<BodyState> before_;         // by body
     std::vector<std::uint8_t> swapped_;     // by body

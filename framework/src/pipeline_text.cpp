@@ -12,6 +12,7 @@ void write_when(Writer& out, const std::vector<std::string>& kinds) {
 void write_step(Writer& out, const StepConfig& step, const std::string& prefix) {
     out.table("[" + prefix + "step]");
     out.plain("dt", step.dt);
+    out.plain("substeps", std::int64_t(step.substeps));
     out.plain("time", step.time);
     out.plain("mode", step.mode);
     out.plain("integrator", step.integrator);

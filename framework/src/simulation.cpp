@@ -73,11 +73,21 @@ void Simulation::step() {
     Pipeline& pipeline = state_->pipeline;
     const double dt = state_->config().step.dt;
     if (state_->keeps_steps && !first_break()) state_->start.take(pipeline);
+    const std::uint64_t step = pipeline.step_number();
     pipeline.begin_step(dt);
+    pipeline.show([&](Observer& o) { o.step_begins(step, pipeline.world); });
+    pipeline.take_time_shown();
     const auto start = StageClock::Clock::now();
-    state_->stepping->step(pipeline, dt);
-    pipeline.measure.clock.add(Phase::step, StageClock::Clock::now() - start);
+    const int parts = state_->config().step.substeps;
+    for (int part = 0; part < parts; ++part) state_->stepping->step(pipeline, dt / parts);
+    const auto end = StageClock::Clock::now();
+    pipeline.measure.clock.add(Phase::step, end - start - pipeline.take_time_shown());
     pipeline.end_step(dt);
+    const char* const mode = state_->config().step.mode.c_str();
+    pipeline.show([&](Observer& o) {
+        o.ended({"step", mode, start, end});
+        o.step_ended(step, pipeline.world);
+    });
 }
 
 void Simulation::apply(const Input& input) {
@@ -96,9 +106,12 @@ void Simulation::use(const PipelineConfig& pipeline) {
     auto next = std::make_unique<State>(scene, state_->plugins, state_->host, state_->expected_steps);
     next->pipeline.take_over(state_->pipeline);
     next->keeps_steps |= state_->keeps_steps;
+    next->pipeline.observers = state_->pipeline.observers;
     next->start.take(next->pipeline);
     state_ = std::move(next);
 }
+
+void Simulation::watch(Observer& observer) { state_->pipeline.observers.push_back(&observer); }
 
 std::uint64_t Simulation::step_number() const { return state_->pipeline.step_number(); }
 

@@ -112,4 +112,5 @@ KOLIZE_PLUGIN(AngleSum, .name = "angle_sum", .summary = "triangle-triangle test 
                   "amount that depends on its shape; coplanar triangles are never found. Float, as in the "
                   "thesis, errs more often than double (docs/accuracy.md).",
               .choose = "To see what the thesis' pipeline gives, as a baseline; not for new work.",
-              .capabilities = {.time_of_impact = true, .crossings = true})
+              .capabilities = {
+                  .shape_kinds = all_shape_kinds | bit(ShapeKind::capsule), .time_of_impact = true, .crossings = true})

@@ -203,4 +203,8 @@ KOLIZE_PLUGIN(Embree, .name = "embree", .summary = "candidate triangles by Embre
                   "Exact for the corners as they come, as moller: boxes are rounded outward and only choose "
                   "which triangles are tested.",
               .choose = "Choose it to compare with, or to check another narrowphase against; moller does not refit.",
-              .capabilities = {.time_of_impact = true, .allocates = true, .exact = true, .crossings = true})
+              .capabilities = {.shape_kinds = all_shape_kinds | bit(ShapeKind::capsule),
+                               .time_of_impact = true,
+                               .allocates = true,
+                               .exact = true,
+                               .crossings = true})

@@ -40,4 +40,7 @@ KOLIZE_PLUGIN(Exact, .name = "exact",
                   "No wrong answer for any finite corners as they come: triangles are closed, so that a touch "
                   "counts. The ends of a segment are within a few roundings of the exact ones.",
               .choose = "As the judge of other triangle tests, and wherever a wrong answer matters more than its time.",
-              .capabilities = {.time_of_impact = true, .exact = true, .crossings = true})
+              .capabilities = {.shape_kinds = all_shape_kinds | bit(ShapeKind::capsule),
+                               .time_of_impact = true,
+                               .exact = true,
+                               .crossings = true})

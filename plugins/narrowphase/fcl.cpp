@@ -73,4 +73,7 @@ KOLIZE_PLUGIN(
         "A separating-axis test along eleven axes in double: right in general position, and without an error bound "
         "where triangles touch or nearly do. Its contact points are used by the contact model averaged.",
     .choose = "To compare with, or to check another narrowphase against; moller is exact.",
-    .capabilities = {.time_of_impact = true, .allocates = true, .crossings = true})
+    .capabilities = {.shape_kinds = all_shape_kinds | bit(ShapeKind::capsule),
+                     .time_of_impact = true,
+                     .allocates = true,
+                     .crossings = true})

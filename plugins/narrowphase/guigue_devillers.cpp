@@ -352,4 +352,5 @@ KOLIZE_PLUGIN(GuigueDevillers, .name = "guigue_devillers",
               .choose =
                   "For solids that cross in general position, when the triangle test is what takes the time. Take "
                   "exact where a wrong answer matters.",
-              .capabilities = {.time_of_impact = true, .crossings = true})
+              .capabilities = {
+                  .shape_kinds = all_shape_kinds | bit(ShapeKind::capsule), .time_of_impact = true, .crossings = true})

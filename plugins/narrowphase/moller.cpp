@@ -176,4 +176,7 @@ KOLIZE_PLUGIN(
         "where triangles touch, share an edge, are slivers or nearly coplanar (docs/accuracy.md). Segments, "
         "which the contact model averaged uses, are computed in plain arithmetic.",
     .choose = "When meshes collide: with the contact model contour it is the default of this project.",
-    .capabilities = {.time_of_impact = true, .exact = true, .crossings = true})
+    .capabilities = {.shape_kinds = all_shape_kinds | bit(ShapeKind::capsule),
+                     .time_of_impact = true,
+                     .exact = true,
+                     .crossings = true})

@@ -21,6 +21,7 @@ mode = "bisection"
 integrator = "semi_implicit_euler"
 tolerance = 0.25
 max_impacts = 7
+substeps = 3
 time = 3
 [[material]]
 name = "rubber"
@@ -99,6 +100,7 @@ iterations = 10
     CHECK(step.integrator == "semi_implicit_euler");
     CHECK(step.tolerance == 0.25);
     CHECK(step.max_impacts == 7);
+    CHECK(step.substeps == 3);
     CHECK(step.time == 3);
 
     REQUIRE(world.shapes.size() == 4);

@@ -46,6 +46,25 @@ TEST_CASE("a gas of elastic bodies keeps energy and momentum in every stepping t
         }
 }
 
+TEST_CASE("a step in four parts is four steps", "[simulation]") {
+    for (const char* mode : {"discrete", "rollback", "bisection", "continuous"}) {
+        CAPTURE(mode);
+        Scene scene = mesh_gas();
+        scene.pipeline.step.mode = mode;
+        scene.pipeline.step.dt = 1.0 / 64;
+        scene.pipeline.step.substeps = 4;
+        const RunResult parts = run(scene, 50);
+        scene.pipeline.step.dt /= 4;
+        scene.pipeline.step.substeps = 1;
+        const RunResult steps = run(scene, 200);
+        CHECK(parts.contacts > 5);
+        CHECK(parts.state_hash == steps.state_hash);
+        CHECK(parts.contacts == steps.contacts);
+        CHECK(parts.events == steps.events);
+        CHECK(parts.time == steps.time);
+    }
+}
+
 TEST_CASE("bisection stops bodies at the moment of impact", "[simulation]") {
     Scene scene = box_gas();
     const double discrete = run(scene, 300).max_penetration_m;

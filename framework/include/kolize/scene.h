@@ -20,6 +20,7 @@ struct ResponseRule {
 
 struct StepConfig {
     double dt = 1.0 / 240;          // s
+    int substeps = 1;               // each with a search and a response of its own
     std::string mode = "discrete";  // discrete | rollback | bisection | continuous
     std::string integrator = "pdmv4";
     double tolerance = 1e-3;  // bisection: the impact time is found to this share of dt

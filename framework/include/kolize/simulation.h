@@ -69,6 +69,8 @@ struct LedgerBreak {
 // One sentence with all of it.
 KOLIZE_API std::string to_string(const LedgerBreak& broken, const World& world);
 
+class Observer;
+
 class KOLIZE_API Simulation {
 public:
     // Makes the stages and negotiates: throws Error, before any step, in a sentence that names a plugin that would do,
@@ -83,6 +85,9 @@ public:
     // Between two steps. Throws std::invalid_argument for a body that is not there or is static, or for what is not
     // finite, and what the constructor throws for a pipeline; the simulation then goes on as if nothing had been asked.
     void apply(const Input& input);
+    // Shows everything from the next step on, also in another pipeline that is put in. It has to outlive the
+    // simulation.
+    void watch(Observer& observer);
     // Of the step that comes next, from the beginning of the run; a capsule's run begins later.
     std::uint64_t step_number() const;
 

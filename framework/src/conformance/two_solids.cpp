@@ -38,6 +38,7 @@ Shape shape_of_kind(ShapeKind kind) {
     case ShapeKind::sphere: return make_sphere("sphere", 0.8);
     case ShapeKind::box: return make_box("box", Vec3(0.9, 0.6, 0.5));
     case ShapeKind::half_space: return make_half_space("half_space", Vec3(0, 1, 0), 0.1);
+    case ShapeKind::capsule: return make_capsule("capsule", 0.4, 0.7);
     case ShapeKind::hull: return make_hull("hull", corners_of_hull());
     default: return make_mesh("l_prism", l_prism());
     }
@@ -65,7 +66,8 @@ Mat3 random_rotation(std::mt19937_64& random) {
 
 World random_two_solids(std::mt19937_64& random, std::uint32_t shape_kinds) {
     std::vector<ShapeKind> kinds;
-    for (const ShapeKind kind : {ShapeKind::sphere, ShapeKind::box, ShapeKind::half_space, ShapeKind::mesh})
+    for (const ShapeKind kind :
+         {ShapeKind::sphere, ShapeKind::box, ShapeKind::half_space, ShapeKind::mesh, ShapeKind::capsule})
         if (shape_kinds & bit(kind)) kinds.push_back(kind);
     // Who takes meshes takes a hull for one.
     if (shape_kinds & bit(ShapeKind::hull) && !(shape_kinds & bit(ShapeKind::mesh))) kinds.push_back(ShapeKind::hull);

@@ -21,6 +21,7 @@ StepConfig read_step(const toml::table& config) {
     TableReader reader(table(config, "step"), "[step]");
     StepConfig step;
     step.dt = reader.number("dt", step.dt, positive);
+    step.substeps = static_cast<int>(reader.integer("substeps", step.substeps, {1, 1e6}));
     step.mode = reader.choice("mode", step.mode, stepping_names());
     step.where = reader.where("mode");
     step.integrator = reader.choice("integrator", step.integrator, integrator_names());

@@ -127,9 +127,9 @@ private:
     void look_along_features() {
         if (a_.count == 3) try_plane({a_.edge(0), true}, {a_.edge(1), true}, 1);
         if (b_.count == 3) try_plane({b_.edge(0), false}, {b_.edge(1), false}, -1);
-        if (a_.count == 3 && b_.count == 3)
-            for (int i = 0; i < 3; ++i)
-                for (int j = 0; j < 3; ++j) try_plane({a_.edge(i), true}, {b_.edge(j), false}, 1);
+        if (a_.count > 1 && b_.count > 1)
+            for (int i = 0; i < a_.edges(); ++i)
+                for (int j = 0; j < b_.edges(); ++j) try_plane({a_.edge(i), true}, {b_.edge(j), false}, 1);
     }
 
     void try_plane(const Tie& first, const Tie& second, double first_sign) {

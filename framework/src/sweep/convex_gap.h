@@ -1,4 +1,4 @@
-// The gap between two convex features, points or triangles, and the plane that separates them.
+// The gap between two convex features, points, segments or triangles, and the plane that separates them.
 #pragma once
 
 #include <kolize/math.h>
@@ -9,9 +9,9 @@ namespace kolize {
 
 struct ConvexFeature {
     std::array<Vec3, 3> corners;
-    int count = 3;  // 3, or 1: a point
+    int count = 3;  // 3; 2: a segment; 1: a point
 
-    int edges() const { return count; }  // a point counts as one edge without length
+    int edges() const { return count < 3 ? 1 : 3; }  // a point counts as one edge without length
     Vec3 edge(int k) const { return corners[(k + 1) % count] - corners[k]; }
 };
 

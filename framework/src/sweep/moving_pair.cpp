@@ -6,20 +6,6 @@ namespace kolize {
 
 namespace {
 
-// One point at the origin, for spheres.
-const Mesh& point_mesh() {
-    static const Mesh mesh = [] {
-        Mesh point;
-        point.vertices = {Vec3::Zero()};
-        point.triangles = {{0, 0, 0}};
-        point.hierarchy.nodes.resize(1);
-        point.hierarchy.nodes[0].count = 1;
-        point.hierarchy.order = {0};
-        return point;
-    }();
-    return mesh;
-}
-
 // Largest s in [0, horizon] such that gap + speed s - acceleration s^2 / 2 stays at or above 0 until then.
 double time_above_zero(double gap, double speed, double acceleration, double horizon) {
     if (!(gap > 0)) return 0;
@@ -31,22 +17,27 @@ double time_above_zero(double gap, double speed, double acceleration, double hor
 
 }  // namespace
 
-ConvexFeature SweptBody::feature(std::uint32_t triangle) const {
-    const Triangle& t = mesh->triangles[triangle];
-    return {{mesh->vertices[t[0]], mesh->vertices[t[1]], mesh->vertices[t[2]]}, is_point() ? 1 : 3};
+ConvexFeature SweptBody::feature(std::uint32_t number) const {
+    if (!mesh) return {{-core, core, Vec3::Zero()}, is_point() ? 1 : 2};
+    const Triangle& t = mesh->triangles[number];
+    return {{mesh->vertices[t[0]], mesh->vertices[t[1]], mesh->vertices[t[2]]}, 3};
 }
 
 SweptBody swept_body(const World& world, std::uint32_t body) {
     const Shape& shape = world.shape_of(body);
     SweptBody swept;
     swept.id = body;
+    swept.core_box.count = 1;
     switch (shape.kind) {
-    case ShapeKind::sphere:
-        swept.mesh = &point_mesh();
-        swept.radius = shape.radius;
-        break;
+    case ShapeKind::sphere: swept.radius = shape.radius; break;
     case ShapeKind::half_space: swept.plane_normal = shape.normal; break;
-    case ShapeKind::capsule: break;  // not taken: no pipeline has one
+    case ShapeKind::capsule:
+        swept.radius = shape.cap_radius;
+        swept.core = Vec3(0, shape.half_height, 0);
+        swept.reach = shape.half_height;
+        swept.core_box.half.y() =
+            std::nextafter(static_cast<float>(shape.half_height), std::numeric_limits<float>::infinity());
+        break;
     case ShapeKind::box:
     case ShapeKind::hull:
     case ShapeKind::mesh:
@@ -126,12 +117,14 @@ bool MovingPair::clearly_apart(const PairMoment& moment, const ConvexFeature& fa
         return length > 0 && gap(fa.corners, fb.corners) > now * length && gap(a_then, b_then) > then * length;
     };
     const auto middle = [](const ConvexFeature& f) {
-        return f.count == 1 ? f.corners[0] : Vec3((f.corners[0] + f.corners[1] + f.corners[2]) / 3);
+        Vec3 sum = f.corners[0];
+        for (int i = 1; i < f.count; ++i) sum += f.corners[i];
+        return Vec3(sum / f.count);
     };
     const Vec3 across = middle(fb) - middle(fa);
     if (between(across)) return true;
     for (const ConvexFeature* f : {&fa, &fb}) {
-        if (f->count == 1) continue;
+        if (f->count < 3) continue;
         const Vec3 face = f->edge(0).cross(f->edge(1));
         if (between(face.dot(across) < 0 ? Vec3(-face) : face)) return true;
     }

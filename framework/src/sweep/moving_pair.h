@@ -10,17 +10,24 @@
 
 namespace kolize {
 
-// A body as the sweep sees it: triangles, a point with a radius, or a half-space.
+// A body as the sweep sees it: triangles, a point or a segment with a radius, or a half-space.
 struct SweptBody {
     std::uint32_t id = 0;
-    const Mesh* mesh = nullptr;        // of a sphere: one point; of a half-space: none
-    double radius = 0;                 // m, of a sphere
+    const Mesh* mesh = nullptr;        // none of a sphere, a capsule, a half-space
+    double radius = 0;                 // m, of a sphere or capsule
+    Vec3 core = Vec3::Zero();          // capsule: its axis goes from -core to core, body frame
+    HierarchyNode core_box;            // of a sphere or capsule without its radius
     double reach = 0;                  // m, farthest corner from the centre of mass: what turning can move
     Vec3 plane_normal = Vec3::Zero();  // half-space: out of the solid, body frame
 
-    bool is_point() const { return radius > 0; }
-    bool is_plane() const { return !mesh; }
-    ConvexFeature feature(std::uint32_t triangle) const;
+    bool is_point() const { return radius > 0 && reach == 0; }
+    bool is_plane() const { return !mesh && radius == 0; }
+    // Boxes over the features; of a half-space one without size.
+    bool empty() const { return mesh && mesh->hierarchy.nodes.empty(); }
+    const HierarchyNode& node(std::uint32_t i) const { return mesh ? mesh->hierarchy.nodes[i] : core_box; }
+    // The i-th feature in the order of the boxes' leaves: a triangle's number, or 0.
+    std::uint32_t feature_at(std::uint32_t i) const { return mesh ? mesh->hierarchy.order[i] : 0; }
+    ConvexFeature feature(std::uint32_t number) const;
 };
 
 SweptBody swept_body(const World& world, std::uint32_t body);

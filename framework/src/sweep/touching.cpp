@@ -59,7 +59,7 @@ private:
         if (b.count == 1)
             add_corner_of_b(b.points[0]);
         else if (!add_shared_area(a, b))
-            add(0.5 * (gap.on_a + gap.on_b), width_);
+            add(gap.on_a + (pair_.a.radius + 0.5 * width_) * normal_, width_);
     }
 
     void add(const Vec3& point, double width) {
@@ -73,8 +73,12 @@ private:
         points_.push_back({point, normal_, gap});
     }
     // The other surface is no nearer than its foremost point.
-    void add_corner_of_a(const Vec3& point) { add(point, surface_a_ + width_ - normal_.dot(point)); }
-    void add_corner_of_b(const Vec3& point) { add(point, normal_.dot(point) - surface_a_); }
+    void add_corner_of_a(const Vec3& point) {
+        add(point + pair_.a.radius * normal_, surface_a_ + width_ - normal_.dot(point));
+    }
+    void add_corner_of_b(const Vec3& point) {
+        add(point - pair_.b.radius * normal_, normal_.dot(point) - surface_a_ - pair_.radii);
+    }
 
     // Signed area of (p, q, r) in the view along the normal, times two.
     double turn(const Vec3& p, const Vec3& q, const Vec3& r) const { return normal_.dot((q - p).cross(r - p)); }
@@ -113,7 +117,7 @@ private:
         const double at_p = turn(r, s, p), at_q = turn(r, s, q), at_r = turn(p, q, r), at_s = turn(p, q, s);
         const bool across = (at_p > 0) != (at_q > 0) && (at_r > 0) != (at_s > 0);
         if (!across || at_p == at_q) return false;
-        add(p + (at_p / (at_p - at_q)) * (q - p), width_);
+        add(p + (at_p / (at_p - at_q)) * (q - p) + pair_.a.radius * normal_, width_);
         return true;
     }
 

@@ -29,15 +29,13 @@ public:
     }
 
     void run() {
-        if (pair_.a.mesh->hierarchy.nodes.empty()) return;
-        if (!pair_.b.is_plane() && pair_.b.mesh->hierarchy.nodes.empty()) return;
+        if (pair_.a.empty() || pair_.b.empty()) return;
         auto& stack = scratch_.stack;
         stack.assign(1, {0, 0});
         while (!stack.empty()) {
             const auto [i, j] = stack.back();
             stack.pop_back();
-            const HierarchyNode& a = pair_.a.mesh->hierarchy.nodes[i];
-            const HierarchyNode& b = pair_.b.is_plane() ? plane_node_ : pair_.b.mesh->hierarchy.nodes[j];
+            const HierarchyNode &a = pair_.a.node(i), &b = pair_.b.node(j);
             if (stays_away(a, b)) continue;
             if (a.is_leaf() && b.is_leaf()) {
                 if (!visit_leaves(a, b)) return;
@@ -52,12 +50,6 @@ public:
     }
 
 private:
-    static HierarchyNode plane_node() {
-        HierarchyNode node;
-        node.count = 1;
-        return node;
-    }
-
     void add_axis(const Vec3& n) {
         SweepAxis& axis = axes_[axis_count_++];
         const Mat3 to_b = moment_.b_to_a.rotation.transpose();
@@ -92,9 +84,7 @@ private:
     bool visit_leaves(const HierarchyNode& a, const HierarchyNode& b) {
         for (std::uint32_t i = a.first; i < a.first + a.count; ++i)
             for (std::uint32_t j = b.first; j < b.first + b.count; ++j)
-                if (!visit_(pair_.a.mesh->hierarchy.order[i],
-                            pair_.b.is_plane() ? 0u : pair_.b.mesh->hierarchy.order[j]))
-                    return false;
+                if (!visit_(pair_.a.feature_at(i), pair_.b.feature_at(j))) return false;
         return true;
     }
 
@@ -103,7 +93,6 @@ private:
     double reach_, span_, bend_ = 0;
     ImpactScratch& scratch_;
     Visit& visit_;
-    HierarchyNode plane_node_ = plane_node();
     std::array<SweepAxis, 6> axes_;
     int axis_count_ = 0;
 };
