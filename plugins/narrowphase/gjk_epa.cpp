@@ -1,8 +1,9 @@
 // Convex bodies by their support functions: the farthest point in a direction is all that is asked of a body.
 //
 // Round bodies are a core, a point or a segment, and a radius around it. GJK finds the distance of the two cores; where
-// it is less than the radii, that is the contact. Where the cores themselves overlap, libccd finds the normal, by EPA
-// or MPR, and the depth is what the support functions say along it. The contact point is where the two would touch,
+// it is less than the radii, that is the contact. Where polyhedra overlap, libccd finds the normal, by EPA or MPR, and
+// the depth is what the support functions say along it; a core inside a polyhedron has few ways out, and all are tried.
+// The contact point is where the two would touch,
 // were they moved apart along the normal.
 //
 // Everything is computed in the frame of the first body and in units of the pair's size, so that turning, moving and
@@ -289,9 +290,45 @@ private:
             touch.point = nearest.a + (a.radius() - 0.5 * touch.depth) * touch.normal;
             return touch.depth > 0 ? Outcome::overlap : Outcome::apart;
         }
+        if (a.radius() > 0 && second.shape->mesh) return lead_out(a, second, first, second, touch);
+        if (b.radius() > 0 && first.shape->mesh) return lead_out(b, first, first, second, touch);
         // The difference of two points or segments has no inside.
         const bool solid = first.radius() == 0 || second.radius() == 0;
         return penetrate(solid ? a : first, solid ? b : second, first, second, touch);
+    }
+
+    // A core inside a polyhedron: the least depth is along a face's normal, or across a segment and an edge.
+    Outcome lead_out(const Solid& core, const Solid& polyhedron, const Solid& first, const Solid& second,
+                     Touch& touch) const {
+        const Mesh& mesh = *polyhedron.shape->mesh;
+        touch.depth = infinity;
+        const auto consider = [&](const Vec3& normal) {
+            const double depth = normal.dot(first.support(normal) - second.support(-normal));
+            if (depth < touch.depth) touch.depth = depth, touch.normal = normal;
+        };
+        for (const Vec3& outward : mesh.normals) {
+            const Vec3 normal = polyhedron.rotation * outward;
+            consider(&polyhedron == &first ? normal : Vec3(-normal));
+        }
+        const Vec3 axis = core.rotation * Vec3(0, core.shape->half_height, 0);
+        for (const Edge& edge : mesh.edges) {
+            const Vec3 along = polyhedron.rotation * (mesh.vertices[edge.v1] - mesh.vertices[edge.v0]);
+            const Vec3 across = axis.cross(along);
+            if (!(across.norm() > 1e-9 * axis.norm() * along.norm())) continue;
+            for (const double sign : {1.0, -1.0}) consider(sign * across.normalized());
+        }
+        return put_point(first, second, touch) ? Outcome::overlap : Outcome::failure;
+    }
+
+    // In the middle of the overlap, where the bodies would touch if they were led apart along the normal.
+    bool put_point(const Solid& first, const Solid& second, Touch& touch) const {
+        Solid moved = second;
+        constexpr double gap = 0.1;
+        moved.position += (touch.depth + gap) * touch.normal;
+        Nearest nearest;
+        if (!Gjk().separate(first, moved, 0, max_iterations_, nearest)) return false;
+        touch.point = nearest.a - 0.5 * touch.depth * touch.normal;
+        return true;
     }
 
     Outcome penetrate(const Solid& a, const Solid& b, const Solid& first, const Solid& second, Touch& touch) const {
@@ -316,13 +353,7 @@ private:
         const double round = a.is_core ? first.radius() + second.radius() : 0;
         if (!(touch.depth > 0) || (method_ == "epa" && !(std::abs(touch.depth - depth - round) < 1e-3)))
             return Outcome::failure;
-        Solid moved = second;
-        constexpr double gap = 0.1;
-        moved.position += (touch.depth + gap) * touch.normal;
-        Nearest nearest;
-        if (!Gjk().separate(first, moved, 0, max_iterations_, nearest)) return Outcome::failure;
-        touch.point = nearest.a - 0.5 * touch.depth * touch.normal;
-        return Outcome::overlap;
+        return put_point(first, second, touch) ? Outcome::overlap : Outcome::failure;
     }
 
     // What the bodies' boxes do.

@@ -107,6 +107,7 @@ TEST_CASE("Hulls collide as meshes of the same form do, in every stepping", "[hu
 
 TEST_CASE("A capsule is refused where the narrowphase does not take it, and runs where it does", "[capsule_shape]") {
     Scene scene = gas(make_capsule("capsule", 0.3, 0.4), 3, 1.6, 6);
+    scene.pipeline.narrowphase = stage("sat");
     CHECK_THROWS_WITH(run(scene, 1), Catch::Contains("capsule") && Catch::Contains("bounding_volume"));
     scene.pipeline.narrowphase = stage("bounding_volume", {{"volume", "sphere"}});
     scene.pipeline.responses = {{stage("simple_bounce"), {}}};

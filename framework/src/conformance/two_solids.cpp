@@ -1,6 +1,7 @@
 #include "conformance/two_solids.h"
 
 #include "mesh_contacts.h"
+#include "sweep/convex_gap.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -182,11 +183,41 @@ Overlap sphere_overlaps(const World& world, std::uint32_t sphere, std::uint32_t 
     return overlap == Overlap::apart && nearest < shape.radius ? Overlap::too_close_to_tell : overlap;
 }
 
+// Not by the nearest points of capsule_contacts.h, but by those that the sweep takes.
+Overlap capsule_overlaps(const World& world, std::uint32_t capsule, std::uint32_t other) {
+    const Shape &pill = world.shape_of(capsule), &shape = world.shape_of(other);
+    const Quat to_other = world.orientation[other].conjugate();
+    const Vec3 center = to_other * (world.position[capsule] - world.position[other]);
+    const Vec3 half = to_other * world.orientation[capsule] * Vec3(0, pill.half_height, 0);
+    const ConvexFeature core{{center - half, center + half, Vec3::Zero()}, 2};
+    const auto gap_to = [&](const ConvexFeature& feature, double radius) {
+        return gap_between(core, feature).distance - pill.cap_radius - radius;
+    };
+    if (shape.kind == ShapeKind::sphere) return by_gap(gap_to({{Vec3::Zero()}, 1}, shape.radius));
+    if (shape.kind == ShapeKind::capsule) {
+        const Vec3 end(0, shape.half_height, 0);
+        return by_gap(gap_to({{-end, end, Vec3::Zero()}, 2}, shape.cap_radius));
+    }
+    double nearest = infinity;
+    for (const Triangle& t : shape.mesh->triangles) {
+        const Vec3 &u = shape.mesh->vertices[t[0]], &v = shape.mesh->vertices[t[1]], &w = shape.mesh->vertices[t[2]];
+        nearest = std::min(nearest, gap_to({{u, v, w}, 3}, 0));
+    }
+    // Of a core that goes through triangles or lies inside, the distance says little.
+    const Overlap overlap = by_gap(nearest);
+    return overlap == Overlap::apart && center.norm() - pill.half_height < shape.radius ? Overlap::too_close_to_tell
+                                                                                        : overlap;
+}
+
 Overlap half_space_overlaps(const World& world, std::uint32_t half_space, std::uint32_t other) {
     const Vec3 normal = world.orientation[half_space] * world.shape_of(half_space).normal;
     const Shape& shape = world.shape_of(other);
     const Vec3 offset = world.position[other] - world.position[half_space];
     if (shape.kind == ShapeKind::sphere) return by_gap(normal.dot(offset) - shape.radius);
+    if (shape.kind == ShapeKind::capsule) {
+        const double half = std::abs(normal.dot(world.orientation[other] * Vec3(0, shape.half_height, 0)));
+        return by_gap(normal.dot(offset) - half - shape.cap_radius);
+    }
     double lowest = infinity;
     for (const Vec3& v : shape.mesh->vertices)
         lowest = std::min(lowest, normal.dot(offset + world.orientation[other] * v));
@@ -199,6 +230,8 @@ Overlap reference_overlap(const World& world) {
     const ShapeKind a = world.shape_of(0).kind, b = world.shape_of(1).kind;
     if (a == ShapeKind::half_space) return half_space_overlaps(world, 0, 1);
     if (b == ShapeKind::half_space) return half_space_overlaps(world, 1, 0);
+    if (a == ShapeKind::capsule) return capsule_overlaps(world, 0, 1);
+    if (b == ShapeKind::capsule) return capsule_overlaps(world, 1, 0);
     if (a == ShapeKind::sphere) return sphere_overlaps(world, 0, 1);
     if (b == ShapeKind::sphere) return sphere_overlaps(world, 1, 0);
     return meshes_overlap(world);
