@@ -35,7 +35,7 @@ public:
             seen_.clear();
             return;
         }
-        if (is_known(input) && find_moved(input.bounds) && file_moved(input.bounds)) {
+        if (is_known(input) && file_moved(input.bounds)) {
             find_pairs_of_moved(input.bounds);
         } else {
             file_all(input);
@@ -58,7 +58,7 @@ public:
 
 private:
     static constexpr std::size_t most_moved = 4;     // one row in so many: all are looked for when more have moved
-    static constexpr std::size_t most_strayed = 16;  // one row in so many: all are filed anew when more have left
+    static constexpr std::size_t most_strayed = 32;  // one row in so many: all are filed anew when more have left
 
     // Bit for bit.
     static bool is_same(const Aabb& a, const Aabb& b) {
@@ -75,36 +75,52 @@ private:
         return seen_.size() == input.bounds.size() && generation_ == input.generation;
     }
 
-    // False if there are too many.
-    bool find_moved(std::span<const Aabb> bounds) {
-        const auto rows = static_cast<std::uint32_t>(bounds.size());
-        std::size_t count = 0;
-        moved_.resize(rows);
-        for (std::uint32_t row = 0; row < rows && count <= rows / most_moved; ++row) {
-            moved_[count] = row;
-            count += !is_same(bounds[row], seen_[row]);
-        }
-        moved_.resize(count);
-        return count <= rows / most_moved;
-    }
-
-    // False if it is cheaper to look for all: large boxes have many small ones inside.
+    // Files what has moved, a few rows behind the search for it, so that memory has time to bring what that needs.
+    // False if looking for all is cheaper: too many have moved, or large boxes that have many small ones inside.
     bool file_moved(std::span<const Aabb> bounds) {
+        constexpr std::size_t behind = 8;
+        const auto rows = static_cast<std::uint32_t>(bounds.size());
+        std::size_t filed = 0;
         double cells = 0;
-        for (const std::uint32_t row : moved_) {
-            if (!kolize::is_valid(bounds[row])) kolize::require_valid_bounds(bounds);
-            cells += cells_.cells_inside(bounds[row]);
-        }
-        if (cells > static_cast<double>(bounds.size())) return false;
-        for (const std::uint32_t row : moved_) {
+        moved_.clear();
+        if (most_of_some_moved(bounds)) return false;
+        for (std::uint32_t row = 0; row < rows; ++row) {
+            if (is_same(bounds[row], seen_[row])) continue;
+            if (!kolize::is_valid(bounds[row])) refuse(bounds);
             seen_[row] = bounds[row];
-            if (has_strayed_[row] || cells_.move(row, bounds[row])) continue;
-            has_strayed_[row] = 1;
-            strayed_.push_back(row);
+            moved_.push_back(row);
+            cells_.prefetch(row);
+            cells += cells_.cells_inside(bounds[row]);
+            if (moved_.size() > rows / most_moved || cells > rows) return false;
+            if (moved_.size() > behind) file(moved_[filed++], bounds);
         }
-        if (strayed_.size() > bounds.size() / most_strayed) sort_into_cells(bounds);
+        while (filed < moved_.size()) file(moved_[filed++], bounds);
+        if (strayed_.size() > rows / most_strayed) sort_into_cells(bounds);
         if (!strayed_.empty()) cells_of_strayed_.build(bounds, strayed_, cell_size_);
         return true;
+    }
+
+    // Spares filing a quarter of all rows for nothing.
+    bool most_of_some_moved(std::span<const Aabb> bounds) const {
+        constexpr std::size_t some = 64;
+        std::size_t moved = 0;
+        for (std::size_t i = 0; i < some; ++i) {
+            const std::size_t row = i * bounds.size() / some;
+            moved += !is_same(bounds[row], seen_[row]);
+        }
+        return moved > some / 2;
+    }
+
+    void file(std::uint32_t row, std::span<const Aabb> bounds) {
+        if (has_strayed_[row] || cells_.move(row, bounds[row])) return;
+        has_strayed_[row] = 1;
+        strayed_.push_back(row);
+    }
+
+    // Nothing is known afterwards.
+    void refuse(std::span<const Aabb> bounds) {
+        seen_.clear();
+        kolize::require_valid_bounds(bounds);
     }
 
     void file_all(const kolize::BroadphaseInput& input) {
@@ -113,7 +129,7 @@ private:
         if (!known) {
             rows_.resize(input.bounds.size());
             std::iota(rows_.begin(), rows_.end(), 0u);
-            is_moved_.assign(rows_.size(), 0);
+            is_moved_.resize_empty(rows_.size());
             moved_.reserve(rows_.size());
             strayed_.reserve(rows_.size());
             pairs_.reserve(8 * rows_.size());
@@ -141,39 +157,34 @@ private:
         });
     }
 
-    // In the order of the cells, so that one finds in the cache what the one before has looked at.
-    void sort_moved() {
-        moved_.clear();
-        const auto add = [&](std::uint32_t row) {
-            if (is_moved_[row]) moved_.push_back(row);
-        };
-        cells_.for_each(add);
-        for (const std::uint32_t row : strayed_) add(row);
-    }
-
+    // What has strayed looks at the cells, those in the cells do not look at it: it is fewer.
     void find_pairs_of_moved(std::span<const Aabb> bounds) {
-        for (const std::uint32_t row : moved_) is_moved_[row] = 1;
+        for (const std::uint32_t row : moved_) is_moved_.add(row);
         std::size_t kept = 0;
-        for (const Pair& pair : pairs_) {
+        for (const Pair pair : pairs_) {  // by value: what is kept may be written over it
             pairs_[kept] = pair;
-            kept += !(is_moved_[pair.a] | is_moved_[pair.b]);
+            kept += !(is_moved_.has(pair.a) | is_moved_.has(pair.b));
         }
         pairs_.resize(kept);
-        const auto hit = [&](std::uint32_t a, std::uint32_t b, bool certain) {
-            if (b == a || (is_moved_[b] && b < a)) return;
+        const auto report = [&](std::uint32_t a, std::uint32_t b, bool certain) {
             if (certain || bounds[a].overlaps(bounds[b])) pairs_.push_back({std::min(a, b), std::max(a, b)});
         };
-        sort_moved();
+        const auto hit = [&](std::uint32_t a, std::uint32_t b, bool certain) {
+            if (b != a && !(is_moved_.has(b) && b < a)) report(a, b, certain);
+        };
+        const auto hit_in_cells = [&](std::uint32_t strayed, std::uint32_t b, bool certain) {
+            if (is_moved_.has(strayed) || is_moved_.has(b)) report(strayed, b, certain);
+        };
         Found found;
-        for (std::size_t i = 0; i < moved_.size(); ++i) {
-            const std::uint32_t row = moved_[i];
-            constexpr std::size_t ahead = 8;
-            if (i + ahead < moved_.size()) __builtin_prefetch(&bounds[moved_[i + ahead]]);
-            cells_.for_box(row, bounds[row], found, hit);
-            if (!strayed_.empty()) cells_of_strayed_.for_box(row, bounds[row], found, hit);
-        }
+        cells_.for_rows(is_moved_, bounds, found, hit);
+        for (const std::uint32_t row : strayed_)
+            if (is_moved_.has(row)) cells_of_strayed_.for_box(row, bounds[row], found, hit);
         found.empty_into(hit);
-        for (const std::uint32_t row : moved_) is_moved_[row] = 0;
+        if (!strayed_.empty())
+            cells_of_strayed_.for_each(
+                [&](std::uint32_t row) { cells_.for_box(row, bounds[row], found, hit_in_cells); });
+        found.empty_into(hit_in_cells);
+        for (const std::uint32_t row : moved_) is_moved_.remove(row);
     }
 
     double cell_size_ = 0;
@@ -186,8 +197,8 @@ private:
     Cells cells_of_strayed_;
     std::vector<std::uint32_t> strayed_;
     std::vector<std::uint8_t> has_strayed_;
-    std::vector<std::uint32_t> moved_;    // since the call before
-    std::vector<std::uint8_t> is_moved_;  // all 0 between calls
+    std::vector<std::uint32_t> moved_;  // since the call before
+    kolize::RowSet is_moved_;           // empty between calls
 };
 
 }  // namespace

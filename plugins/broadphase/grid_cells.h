@@ -61,6 +61,19 @@ struct alignas(16) Item {
     }
 };
 
+// A set of rows, in bits: what is asked for at random should lie in the nearest cache.
+class RowSet {
+public:
+    void resize_empty(std::size_t rows) { words_.assign((rows + 63) / 64, 0); }
+    void add(std::uint32_t row) { words_[row / 64] |= bit(row); }
+    void remove(std::uint32_t row) { words_[row / 64] &= ~bit(row); }
+    bool has(std::uint32_t row) const { return words_[row / 64] >> row % 64 & 1; }
+
+private:
+    static std::uint64_t bit(std::uint32_t row) { return std::uint64_t(1) << row % 64; }
+    std::vector<std::uint64_t> words_;
+};
+
 // Pairs on their way to whoever asked: finding them and judging them take turns, so that neither has to guess what the
 // other will do.
 struct Found {
@@ -154,6 +167,16 @@ public:
         return true;
     }
 
+    // What move() will ask for.
+    void prefetch(std::uint32_t i) const { __builtin_prefetch(&items_[where_[i]]); }
+
+    // Calls visit(row) in the order of the cells.
+    template <class Visit>
+    void for_each(Visit&& visit) const {
+        for (std::size_t i = 0; i < where_.size(); ++i)
+            if (items_[i].row != none) visit(items_[i].row);
+    }
+
     // Calls hit(a, b, certain) for every two boxes that may overlap, once; they do if it is certain.
     template <class Hit>
     void for_all(std::span<const Aabb> bounds, Hit&& hit) const {
@@ -172,11 +195,23 @@ public:
         found.empty_into(hit);
     }
 
-    // Calls visit(row) in the order of the cells.
-    template <class Visit>
-    void for_each(Visit&& visit) const {
-        for (std::size_t i = 0; i < where_.size(); ++i)
-            if (items_[i].row != none) visit(items_[i].row);
+    // For every box of the set, in the order of the cells, calls hit(row, b, certain) for all others here that may
+    // overlap it. build() was given all rows in their order.
+    template <class Hit>
+    void for_rows(const RowSet& rows, std::span<const Aabb> bounds, Found& found, Hit&& hit) const {
+        std::array<Surroundings, 16> some;
+        for (const Level& level : levels_) {
+            std::size_t count = 0;
+            for (std::uint32_t i = slots_[level.first_slot]; i < end_of(level); ++i) {
+                const std::uint32_t row = items_[i].row;
+                if (row == none || !rows.has(row)) continue;
+                some[count++].item = i;
+                __builtin_prefetch(&slot_[row]);
+                if (count == some.size()) look_about(level, {some.data(), std::exchange(count, 0)}, found, hit);
+                if (levels_.size() > 1) look_elsewhere(level, row, bounds[row], found, hit);
+            }
+            look_about(level, {some.data(), count}, found, hit);
+        }
     }
 
     // Calls hit(row, b, certain) for every box b that may overlap this one, perhaps itself.
@@ -193,6 +228,7 @@ public:
 
     // About how many cells for_box looks at in finer levels.
     double cells_inside(const Aabb& box) const {
+        if (levels_.size() == 1) return 0;
         const UnitBox finest = units(box);
         const double size = size_of(box);
         double sum = 0;
@@ -417,6 +453,58 @@ private:
         rows[count] = slot + level.layer + level.row, count += high[2] & high[1];
         for (std::uint32_t k = 0; k < count; ++k)
             test_slots(level, item.row, probe, rows[k] - low[0], 1 + low[0] + high[0], found, hit);
+    }
+
+    // An item and the slots that it may reach: so many in a row from each of `first` on.
+    struct Surroundings {
+        std::uint32_t item, count, rows;
+        std::uint32_t first[9];
+    };
+
+    void find_surroundings(const Level& level, Surroundings& s) const {
+        const Item& item = items_[s.item];
+        std::int64_t low[3], high[3];  // cells below it and above it
+        for (int axis = 0; axis < 3; ++axis) {
+            low[axis] = item.in_cell(axis) < level.reach;
+            high[axis] = static_cast<std::uint32_t>(item.in_cell(axis) + item.length(axis)) >> cell_bits;
+        }
+        s.rows = 0;
+        s.count = static_cast<std::uint32_t>(1 + low[0] + high[0]);
+        for (std::int64_t z = -low[2]; z <= high[2]; ++z)
+            for (std::int64_t y = -low[1]; y <= high[1]; ++y) {
+                const std::int64_t first =
+                    slot_[item.row] - level.first_slot - low[0] + y * level.row + z * level.layer;
+                s.first[s.rows++] = static_cast<std::uint32_t>(first < 0 ? first + level.slots : first);  // if folded
+            }
+    }
+
+    // Several at a time, so that memory can bring what each of them needs next while it brings that of the others.
+    template <class Hit>
+    void look_about(const Level& level, std::span<Surroundings> some, Found& found, Hit&& hit) const {
+        const std::uint32_t* const slots = slots_.data() + level.first_slot;
+        for (Surroundings& s : some) {
+            find_surroundings(level, s);
+            for (std::uint32_t k = 0; k < s.rows; ++k) __builtin_prefetch(slots + s.first[k]);
+        }
+        for (const Surroundings& s : some)
+            for (std::uint32_t k = 0; k < s.rows; ++k)
+                if (s.first[k] < level.slots) __builtin_prefetch(&items_[slots[s.first[k]]]);
+        for (const Surroundings& s : some) {
+            const Item& item = items_[s.item];
+            const __m128i probe = item.probe();
+            for (std::uint32_t k = 0; k < s.rows; ++k)
+                test_slots(level, item.row, probe, s.first[k], s.count, found, hit);
+        }
+    }
+
+    template <class Hit>
+    void look_elsewhere(const Level& own, std::uint32_t row, const Aabb& box, Found& found, Hit&& hit) const {
+        const UnitBox finest = units(box);
+        for (const Level& other : levels_)
+            if (&other < &own)
+                look_around(other, row, finest, found, hit);
+            else if (&other > &own)
+                look_inside(other, row, finest, hit);
     }
 
     // The cells with the min corners of all boxes that may overlap this one.
