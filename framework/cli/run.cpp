@@ -2,6 +2,7 @@
 #include "common.h"
 #include "film/film.h"
 #include "session.h"
+#include "trace.h"
 
 #include <kolize/capsule.h>
 
@@ -26,6 +27,7 @@ struct RunOptions {
     bool ledger = false;
     std::string capsule;
     std::optional<std::uint64_t> capsule_at;
+    std::string trace;
     FilmOptions film;
     RecordOptions record;
 };
@@ -171,8 +173,11 @@ int run_scene(const RunOptions& options, const PluginLibrary& plugins, Host& hos
     if (!options.capsule.empty()) session.simulation().keep_steps();
     std::optional<Film> film;
     if (options.film.wanted()) film.emplace(options.film, session.scene(), session.simulation(), plugins, host, steps);
+    std::optional<Trace> trace;
+    if (!options.trace.empty()) session.simulation().watch(trace.emplace(options.trace, session.simulation()));
     const std::string complaint = advance(options, session, steps, film);
     if (film) film->finish();
+    if (trace) trace->finish();
     if (!options.record.record.empty()) session.write_recording(options.record.record);
     write_result(options, session);
     if (!complaint.empty()) std::cerr << "kolize: " << complaint << '\n';
@@ -223,9 +228,12 @@ void add_run(CLI::App& app, int& exit_code) {
                                                "File to keep the first step in that fails or breaks the ledger");
     CLI::Option* capsule_at =
         command->add_option("--capsule-at", options->capsule_at, "Write the capsule of this step instead, and go on");
+    CLI::Option* trace = command->add_option(
+        "--trace", options->trace, "Write the calls of all stages as a Chrome trace (JSON): opens in Perfetto");
     add_film_options(*command, options->film);
     add_record_options(*command, options->record);
     expect->excludes("--record")->excludes("--replay");
+    expect->excludes(trace);
     expect->excludes("--frames")->excludes("--video");
     expect->excludes(pipeline)->excludes("--set")->excludes("--time")->excludes("--steps");
     expect->excludes(ledger)->excludes(capsule)->excludes(capsule_at);

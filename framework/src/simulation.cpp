@@ -75,7 +75,7 @@ void Simulation::step() {
     if (state_->keeps_steps && !first_break()) state_->start.take(pipeline);
     const std::uint64_t step = pipeline.step_number();
     pipeline.begin_step(dt);
-    pipeline.show([&](Observer& o) { o.step_begins(step, pipeline.world); });
+    if (!pipeline.observers.empty()) pipeline.show([&](Observer& o) { o.step_begins(step, pipeline.world); });
     pipeline.take_time_shown();
     const auto start = StageClock::Clock::now();
     const int parts = state_->config().step.substeps;
@@ -83,9 +83,9 @@ void Simulation::step() {
     const auto end = StageClock::Clock::now();
     pipeline.measure.clock.add(Phase::step, end - start - pipeline.take_time_shown());
     pipeline.end_step(dt);
-    const char* const mode = state_->config().step.mode.c_str();
+    if (pipeline.observers.empty()) return;
     pipeline.show([&](Observer& o) {
-        o.ended({"step", mode, start, end});
+        o.ended({"step", state_->config().step.mode.c_str(), start, end});
         o.step_ended(step, pipeline.world);
     });
 }
