@@ -24,6 +24,7 @@ class App;
 
 namespace kolize::cli {
 
+void add_advise(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);

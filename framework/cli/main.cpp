@@ -47,6 +47,7 @@ int main(int argc, char** argv) {
     kolize::cli::add_run(app, exit_code);
     kolize::cli::add_view(app, exit_code);
     kolize::cli::add_compare(app, exit_code);
+    kolize::cli::add_advise(app, exit_code);
     kolize::cli::add_bench(app, exit_code);
     kolize::cli::add_check(app, exit_code);
     kolize::cli::add_massprops(app);

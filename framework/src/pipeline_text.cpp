@@ -1,3 +1,5 @@
+#include <kolize/pipeline_file.h>
+
 #include "toml_writer.h"
 
 namespace kolize {
@@ -48,6 +50,12 @@ void write_pipeline(Writer& out, const PipelineConfig& pipeline, const std::stri
         write_stage(out, "[[" + prefix + "response]]", rule.stage);
         write_when(out, rule.kinds);
     }
+}
+
+std::string pipeline_text(const PipelineConfig& pipeline) {
+    Writer out;
+    write_pipeline(out, pipeline, "");
+    return out.text();
 }
 
 }  // namespace kolize

@@ -1,0 +1,321 @@
+#include "search.h"
+
+#include <kolize/observer.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+namespace kolize::cli {
+
+namespace {
+
+constexpr double screened_share = 0.1;                        // of the time
+constexpr std::uint64_t fewest_steps = 20;                    // of a screening
+constexpr double noise = 1.25;                                // one short run may be so much slower than it should be
+constexpr std::uint64_t fewest_rounds = 5, most_rounds = 50;  // of what is compared by time alone
+constexpr double compared_s = 0.1;                            // so long each, within these numbers
+constexpr unsigned order_seed = 20261123;
+
+// Asks another narrowphase about the pairs that the run's own was asked about.
+class ErrorCounter final : public Observer {
+public:
+    ErrorCounter(const std::string& judge, const World& world, const PluginLibrary& plugins, Host& host)
+        : judge_(plugins.make<Narrowphase>({.plugin = judge, .where = {}, .settings = {}}, host)),
+          takes_(plugins.require(StageKind::narrowphase, judge).descriptor->capabilities.shape_kinds) {
+        judge_->prepare(world);
+    }
+
+    void narrowphase_found(const NarrowphaseInput& input, bool touching, const Contacts& found) override {
+        if (touching) return;
+        pairs_.clear();
+        for (const Pair& pair : input.pairs)
+            if (takes(input.world, pair.a) && takes(input.world, pair.b)) pairs_.push_back(pair);
+        detail_.assign(pairs_.size(), Detail::overlap);
+        truth_.clear();
+        judge_->find_contacts({input.world, pairs_, detail_}, truth_);
+        const auto pairs_of = [](const Contacts& contacts, std::vector<Pair>& pairs) {
+            pairs.clear();
+            for (const Contact& c : contacts.rows)
+                if (pairs.empty() || pairs.back() != Pair{c.a, c.b}) pairs.push_back({c.a, c.b});
+        };
+        pairs_of(truth_, overlapping_);
+        pairs_of(found, found_);
+        missed_ += count_missing(overlapping_, found_);
+        std::erase_if(found_, [&](const Pair& p) { return !std::binary_search(pairs_.begin(), pairs_.end(), p); });
+        false_hits_ += count_missing(found_, overlapping_);
+    }
+    std::uint64_t missed() const { return missed_; }
+    std::uint64_t false_hits() const { return false_hits_; }
+
+private:
+    // Both sorted: how many of the first are not in the second.
+    static std::uint64_t count_missing(const std::vector<Pair>& wanted, const std::vector<Pair>& given) {
+        std::uint64_t count = 0;
+        for (const Pair& pair : wanted) count += !std::binary_search(given.begin(), given.end(), pair);
+        return count;
+    }
+    bool takes(const World& world, std::uint32_t body) const { return takes_ & bit(world.shape_of(body).kind); }
+
+    StagePtr<Narrowphase> judge_;
+    std::uint32_t takes_;
+    std::vector<Pair> pairs_, overlapping_, found_;
+    std::vector<Detail> detail_;
+    Contacts truth_;
+    std::uint64_t missed_ = 0, false_hits_ = 0;
+};
+
+class Search {
+public:
+    Search(const Question& question, const PluginLibrary& plugins, Host& host)
+        : question_(question), plugins_(plugins), host_(host), scene_dt_(load({}).pipeline.step.dt) {
+        for (Settings& settings : combinations(question.variations))
+            answer_.candidates.push_back({std::move(settings), {}, {}});
+    }
+
+    Answer run() {
+        screen();
+        if (question_.full) try_all();
+        choose();
+        if (!answer_.chosen) return std::move(answer_);
+        choose_broadphase();
+        look_for_ten_times();
+        if (question_.full) answer_.best_of_full = best_tried();
+        return std::move(answer_);
+    }
+
+private:
+    Scene load(const Settings& settings) const {
+        SceneOptions options = question_.options;
+        options.set.insert(options.set.end(), settings.begin(), settings.end());
+        return load_scene(question_.scene, options, plugins_);
+    }
+
+    // Stops where a limit that can only be broken once is broken.
+    Trial measure(const Settings& settings, double time, bool judged = true) const {
+        Trial trial;
+        try {
+            const Scene scene = load(settings);
+            const double dt = scene.pipeline.step.dt;
+            const std::uint64_t steps = std::max(fewest_steps, steps_in(time, dt));
+            Simulation simulation(scene, plugins_, host_, steps);
+            std::optional<ErrorCounter> errors;
+            if (judged && !question_.judge.empty())
+                simulation.watch(errors.emplace(question_.judge, simulation.world(), plugins_, host_));
+            std::uint64_t done = 0;
+            while (done < steps) {
+                simulation.step();
+                ++done;
+                if (question_.limits.drift && simulation.reading().energy_drift > *question_.limits.drift) break;
+                if (errors && errors->missed() > question_.limits.missed) break;
+                if (errors && errors->false_hits() > question_.limits.false_hits) break;
+            }
+            const RunResult result = simulation.result();
+            trial.cost_ms = 1e3 * result.step.total_s / static_cast<double>(done) * (scene_dt_ / dt);
+            trial.drift = result.energy_drift;
+            trial.penetration = result.max_penetration_m;
+            if (errors) trial.missed = errors->missed(), trial.false_hits = errors->false_hits();
+            trial.escaped = result.escaped;
+            trial.stuck = result.stuck;
+            trial.hash = result.state_hash;
+        } catch (const std::exception& e) {
+            trial.failure = e.what();
+        }
+        return trial;
+    }
+
+    void screen() {
+        Progress progress("advise: short runs", answer_.candidates.size());
+        for (Candidate& candidate : answer_.candidates) {
+            candidate.screened = measure(candidate.settings, screened_share * question_.time);
+            progress.advance();
+        }
+        const auto ran = [](const Candidate& c) { return c.screened->failure.empty(); };
+        if (std::none_of(answer_.candidates.begin(), answer_.candidates.end(), ran))
+            throw Error("none of the " + std::to_string(answer_.candidates.size()) +
+                        " pipelines runs; the first says: " + answer_.candidates.front().screened->failure);
+    }
+
+    const Trial& tried(std::size_t i) {
+        Candidate& candidate = answer_.candidates[i];
+        if (!candidate.tried) candidate.tried = measure(candidate.settings, question_.time);
+        return *candidate.tried;
+    }
+
+    void try_all() {
+        Progress progress("advise: every pipeline", answer_.candidates.size());
+        for (std::size_t i = 0; i < answer_.candidates.size(); ++i, progress.advance())
+            if (answer_.candidates[i].screened->failure.empty()) tried(i);
+    }
+
+    // But for the budget: times of short runs are no proof.
+    std::vector<std::size_t> survivors(Limits limits) const {
+        limits.budget_ms.reset();
+        std::vector<std::size_t> rows;
+        for (std::size_t i = 0; i < answer_.candidates.size(); ++i)
+            if (broken_limit(*answer_.candidates[i].screened, limits).empty()) rows.push_back(i);
+        std::sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) {
+            return answer_.candidates[a].screened->cost_ms < answer_.candidates[b].screened->cost_ms;
+        });
+        return rows;
+    }
+
+    // The cheapest that keeps the limits: the short runs say in which order to look, and when to stop.
+    std::optional<std::size_t> cheapest(const Limits& limits) {
+        const std::vector<std::size_t> rows = survivors(limits);
+        std::vector<std::size_t> close;
+        double best = infinity;
+        Progress progress("advise: long runs", rows.size());
+        for (const std::size_t i : rows) {
+            progress.advance();
+            if (answer_.candidates[i].screened->cost_ms > noise * best) break;
+            if (!broken_limit(tried(i), limits).empty()) continue;
+            best = std::min(best, tried(i).cost_ms);
+            close.push_back(i);
+        }
+        std::erase_if(close, [&](std::size_t i) { return tried(i).cost_ms > noise * best; });
+        return fastest(close);
+    }
+
+    // By the median of several short runs, interleaved.
+    std::optional<std::size_t> fastest(const std::vector<std::size_t>& rows) const {
+        if (rows.size() < 2) return rows.empty() ? std::nullopt : std::optional(rows.front());
+        std::vector<Settings> settings;
+        for (const std::size_t i : rows) settings.push_back(answer_.candidates[i].settings);
+        const std::vector<double> costs = median_costs(settings);
+        return rows[static_cast<std::size_t>(std::min_element(costs.begin(), costs.end()) - costs.begin())];
+    }
+
+    std::vector<double> median_costs(const std::vector<Settings>& settings) const {
+        std::vector<std::vector<double>> costs(settings.size());
+        std::vector<std::size_t> order(settings.size());
+        std::iota(order.begin(), order.end(), 0u);
+        std::mt19937 random(order_seed);
+        const double time = screened_share * question_.time;
+        const auto start = std::chrono::steady_clock::now();
+        for (const Settings& one : settings) measure(one, time, false);  // warms up
+        const std::chrono::duration<double> round_s = std::chrono::steady_clock::now() - start;
+        const double wanted = compared_s * static_cast<double>(settings.size()) / round_s.count();
+        const auto rounds = static_cast<std::uint64_t>(std::clamp(wanted, double(fewest_rounds), double(most_rounds)));
+        Progress progress("advise: comparing times", rounds * settings.size());
+        for (std::uint64_t round = 0; round < rounds; ++round) {
+            std::shuffle(order.begin(), order.end(), random);
+            for (const std::size_t i : order) {
+                costs[i].push_back(measure(settings[i], time, false).cost_ms);
+                progress.advance();
+            }
+        }
+        std::vector<double> medians;
+        for (std::vector<double>& of_one : costs) medians.push_back(median(std::move(of_one)));
+        return medians;
+    }
+
+    // Within a budget the most accurate wins; otherwise the cheapest.
+    void choose() {
+        if (!question_.limits.budget_ms) {
+            answer_.chosen = cheapest(question_.limits);
+            return;
+        }
+        std::vector<std::size_t> rows = survivors(question_.limits);
+        std::erase_if(rows, [&](std::size_t i) {
+            return answer_.candidates[i].screened->cost_ms > noise * *question_.limits.budget_ms;
+        });
+        Progress progress("advise: long runs", rows.size());
+        for (const std::size_t i : rows) {
+            tried(i);
+            progress.advance();
+        }
+        answer_.chosen = best_tried();
+    }
+
+    // Drift, and between drifts that are rounding, penetration.
+    static std::pair<double, double> error(const Trial& trial) {
+        return {std::max(trial.drift, rounding_drift), trial.penetration};
+    }
+
+    std::optional<std::size_t> best_tried() const {
+        const bool by_accuracy = question_.limits.budget_ms.has_value();
+        std::optional<std::size_t> best;
+        const auto rank = [&](const Trial& t) {
+            return std::pair(by_accuracy ? error(t) : std::pair(0.0, 0.0), t.cost_ms);
+        };
+        for (std::size_t i = 0; i < answer_.candidates.size(); ++i) {
+            const std::optional<Trial>& trial = answer_.candidates[i].tried;
+            if (!trial || !broken_limit(*trial, question_.limits).empty()) continue;
+            if (!best || rank(*trial) < rank(*answer_.candidates[*best].tried)) best = i;
+        }
+        return best;
+    }
+
+    void choose_broadphase() {
+        const Candidate& chosen = answer_.candidates[*answer_.chosen];
+        const double time = screened_share * question_.time;
+        const std::uint64_t hash = measure(chosen.settings, time).hash;
+        std::vector<Settings> settings;
+        std::vector<BroadphaseTime> failed;
+        for (const std::string& name : plugins_.names(StageKind::broadphase)) {
+            Settings with = chosen.settings;
+            with.emplace_back("broadphase.plugin", name);
+            const Trial trial = measure(with, time);
+            const bool same = trial.failure.empty() && trial.hash == hash;
+            if (same) {
+                settings.push_back(with);
+                answer_.broadphases.push_back({name, 0, {}});
+            } else {
+                failed.push_back({name, 0, trial.failure.empty() ? "another trajectory" : trial.failure});
+            }
+        }
+        const std::vector<double> costs = median_costs(settings);
+        for (std::size_t i = 0; i < costs.size(); ++i) answer_.broadphases[i].cost_ms = costs[i];
+        std::sort(answer_.broadphases.begin(), answer_.broadphases.end(),
+                  [](const BroadphaseTime& a, const BroadphaseTime& b) { return a.cost_ms < b.cost_ms; });
+        Settings with = chosen.settings;
+        if (!answer_.broadphases.empty()) {
+            with.emplace_back("broadphase.plugin", answer_.broadphases.front().plugin);
+            answer_.chosen_cost_ms = answer_.broadphases.front().cost_ms;
+        }
+        answer_.broadphases.insert(answer_.broadphases.end(), failed.begin(), failed.end());
+        answer_.pipeline = Simulation(load(with), plugins_, host_, 1).pipeline();
+    }
+
+    void look_for_ten_times() {
+        const Trial& chosen = answer_.candidates[*answer_.chosen].known();
+        answer_.by_penetration = chosen.drift <= rounding_drift;
+        Limits limits = question_.limits;
+        limits.budget_ms.reset();
+        if (!answer_.by_penetration)
+            limits.drift = chosen.drift / 10;
+        else if (chosen.penetration > 0)
+            limits.penetration = chosen.penetration / 10;
+        else
+            return;
+        answer_.ten_times = cheapest(limits);
+    }
+
+    const Question& question_;
+    const PluginLibrary& plugins_;
+    Host& host_;
+    double scene_dt_;
+    Answer answer_;
+};
+
+}  // namespace
+
+std::string broken_limit(const Trial& trial, const Limits& limits) {
+    if (!trial.failure.empty()) return trial.failure;
+    if (trial.escaped > 0) return std::to_string(trial.escaped) + " escaped";
+    if (trial.stuck > 0) return std::to_string(trial.stuck) + " stuck";
+    if (!std::isfinite(trial.drift)) return "energy is not finite";
+    if (limits.drift && trial.drift > *limits.drift) return "drift " + number(trial.drift);
+    if (limits.penetration && trial.penetration > *limits.penetration) return number(trial.penetration) + " m deep";
+    if (trial.missed > limits.missed) return std::to_string(trial.missed) + " missed";
+    if (trial.false_hits > limits.false_hits) return std::to_string(trial.false_hits) + " false hits";
+    if (limits.budget_ms && trial.cost_ms > *limits.budget_ms) return number(trial.cost_ms) + " ms";
+    return {};
+}
+
+Answer search(const Question& question, const PluginLibrary& plugins, Host& host) {
+    return Search(question, plugins, host).run();
+}
+
+}  // namespace kolize::cli
