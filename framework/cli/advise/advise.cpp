@@ -134,14 +134,12 @@ std::string ten_times_text(const Answer& answer) {
            number(known.cost_ms / chosen.cost_ms) + " times as much: " + label(better.settings);
 }
 
-std::string full_text(const Question& question, const Answer& answer) {
-    const Trial &best = *answer.candidates[*answer.best_of_full].tried,
-                &chosen = *answer.candidates[*answer.chosen].tried;
-    return "Of all " + std::to_string(answer.candidates.size()) + " over the whole time the best was " +
-           label(answer.candidates[*answer.best_of_full].settings) + " (" + number(best.cost_ms) + " ms, drift " +
-           number(best.drift) + "); the one chosen took " + number(chosen.cost_ms / best.cost_ms) +
-           (question.limits.budget_ms ? " times as long, with a drift " + number(chosen.drift) : " times as long") +
-           " in that one run.";
+std::string full_text(const Answer& answer) {
+    const Candidate& best = answer.candidates[*answer.best_of_full];
+    const std::string of = "Of all " + std::to_string(answer.candidates.size()) + ", each run over the whole time, ";
+    if (answer.best_of_full == answer.chosen) return of + "it is the best.";
+    return of + "the best is " + label(best.settings) + " (drift " + number(best.tried->drift) +
+           "); the one chosen takes " + number(answer.times_best) + " times as long, interleaved.";
 }
 
 void print_answer(const AdviseOptions& options, const Question& question, const Answer& answer, double dt) {
@@ -157,7 +155,7 @@ void print_answer(const AdviseOptions& options, const Question& question, const 
     std::cout << "\nChosen: " << label(answer.candidates[*answer.chosen].settings)
               << " broadphase.plugin=" << answer.pipeline.broadphase.plugin << "\n"
               << ten_times_text(answer) << '\n';
-    if (answer.best_of_full) std::cout << full_text(question, answer) << '\n';
+    if (answer.best_of_full) std::cout << full_text(answer) << '\n';
     std::cout << "Written to " << options.output << ": kolize run " << options.scene << " --pipeline " << options.output
               << '\n';
 }
@@ -208,6 +206,7 @@ Json answer_json(const AdviseOptions& options, const Question& question, const A
             {"chosen", index(answer.chosen)},
             {"ten_times", index(answer.ten_times)},
             {"best_of_full", index(answer.best_of_full)},
+            {"times_best", answer.best_of_full ? Json(answer.times_best) : Json()},
             {"broadphases", broadphases},
             {"output", answer.chosen ? Json(options.output) : Json()},
             {"host", host_block()},

@@ -80,7 +80,7 @@ public:
         if (!answer_.chosen) return std::move(answer_);
         choose_broadphase();
         look_for_ten_times();
-        if (question_.full) answer_.best_of_full = best_tried();
+        if (question_.full) compare_with_best();
         return std::move(answer_);
     }
 
@@ -245,6 +245,25 @@ private:
             if (!best || rank(*trial) < rank(*answer_.candidates[*best].tried)) best = i;
         }
         return best;
+    }
+
+    // Single runs say only which are worth to be measured together with the one chosen.
+    void compare_with_best() {
+        const std::size_t best = *best_tried();
+        const Trial& least = *answer_.candidates[best].tried;
+        std::vector<std::size_t> rows{*answer_.chosen};
+        for (std::size_t i = 0; i < answer_.candidates.size(); ++i) {
+            const std::optional<Trial>& trial = answer_.candidates[i].tried;
+            if (!trial || i == *answer_.chosen || !broken_limit(*trial, question_.limits).empty()) continue;
+            if (question_.limits.budget_ms ? i == best : trial->cost_ms <= noise * least.cost_ms) rows.push_back(i);
+        }
+        std::vector<Settings> settings;
+        for (const std::size_t i : rows) settings.push_back(answer_.candidates[i].settings);
+        const std::vector<double> costs = median_costs(settings);
+        const auto at =
+            question_.limits.budget_ms ? std::prev(costs.end()) : std::min_element(costs.begin(), costs.end());
+        answer_.best_of_full = rows[static_cast<std::size_t>(at - costs.begin())];
+        answer_.times_best = costs.front() / *at;
     }
 
     void choose_broadphase() {

@@ -62,7 +62,8 @@ struct Answer {
     std::vector<BroadphaseTime> broadphases;  // the fastest first; failures last
     std::optional<std::size_t> ten_times;     // the cheapest that is ten times as accurate as the one chosen, by drift,
     bool by_penetration = false;              // or by penetration where the drift is rounding
-    std::optional<std::size_t> best_of_full;  // what a search of everything would have chosen
+    std::optional<std::size_t> best_of_full;  // what a search of everything chooses
+    double times_best = 1;                    // how many times as long the one chosen takes as that, interleaved
     PipelineConfig pipeline;                  // of the one chosen, all parameters in force
 };
 
