@@ -1,5 +1,5 @@
-// kolize check: static queries. Two meshes, one narrowphase, many relative poses.
-#include "common.h"
+// kolize check: static queries. Two meshes, one narrowphase, many relative poses; or a capsule and every narrowphase.
+#include "check_capsule.h"
 
 #include <kolize/mesh_io.h>
 
@@ -127,6 +127,7 @@ Json effective_json(const PluginLibrary& plugins, const StageConfig& config, con
 }
 
 int check(const CheckOptions& options) {
+    if (options.poses.empty()) throw Error("--poses is wanted: a CSV file with the poses of B in A's frame");
     const PluginLibrary plugins = open_plugins(options.plugin_path, {});
     const std::unique_ptr<Host> host = make_host(options.threads);
     const StageConfig config =
@@ -162,11 +163,12 @@ int check(const CheckOptions& options) {
 
 void add_check(CLI::App& app, int& exit_code) {
     const auto options = std::make_shared<CheckOptions>();
-    CLI::App* command = app.add_subcommand("check", "Test two meshes for overlap at given poses");
-    command->add_option("model_a", options->model_a, "Mesh A")->required();
-    command->add_option("model_b", options->model_b, "Mesh B")->required();
+    CLI::App* command = app.add_subcommand(
+        "check", "Test two meshes for overlap at given poses, or hold narrowphases against the exact one in a capsule");
+    command->add_option("model_a", options->model_a, "Mesh A; or a capsule, alone")->required();
+    CLI::Option* model_b = command->add_option("model_b", options->model_b, "Mesh B");
     command->add_option("--poses", options->poses, "CSV: a pose of B in A's frame per row: qw,qx,qy,qz,x,y,z")
-        ->required();
+        ->needs(model_b);
     add_set_option(*command, options->set);
     command->add_option("--detail", options->detail, "What to find out: overlap, normal or manifold")
         ->check(CLI::IsMember({"overlap", "normal", "manifold"}))
@@ -174,8 +176,16 @@ void add_check(CLI::App& app, int& exit_code) {
     add_threads_option(*command, options->threads);
     add_plugin_path_option(*command, options->plugin_path);
     add_json_option(*command, options->json);
-    command->footer("Example: kolize check hand.obj cup.obj --poses poses.csv --set narrowphase.plugin=fcl --json -");
-    command->callback([options, &exit_code] { exit_code = check(*options); });
+    command->footer(
+        "Example: kolize check hand.obj cup.obj --poses poses.csv --set narrowphase.plugin=fcl --json -\n"
+        "Example: kolize check disagreements/0.moller.step12.bodies3-7.capsule.toml\n"
+        "Of a capsule, exit code 1 says that a narrowphase disagrees with the exact one.");
+    command->callback([options, &exit_code] {
+        exit_code =
+            options->model_b.empty()
+                ? check_capsule({options->model_a, options->set, options->plugin_path, options->threads, options->json})
+                : check(*options);
+    });
 }
 
 }  // namespace kolize::cli

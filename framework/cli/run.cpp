@@ -1,6 +1,7 @@
 // kolize run: one scene through one pipeline.
 #include "common.h"
 #include "film/film.h"
+#include "judge/judges.h"
 #include "session.h"
 #include "trace.h"
 
@@ -30,6 +31,7 @@ struct RunOptions {
     std::string trace;
     FilmOptions film;
     RecordOptions record;
+    JudgeOptions judge;
 };
 
 void print_stages(const RunResult& result) {
@@ -146,18 +148,20 @@ Json replay_json(const Session& session) {
     return json;
 }
 
-void write_result(const RunOptions& options, const Session& session) {
+void write_result(const RunOptions& options, const Session& session, const std::optional<Judges>& judges) {
     const Simulation& simulation = session.simulation();
     const RunResult result = simulation.result();
     if (options.json != "-") {
         print_result(result);
         print_reports(simulation);
         if (session.replays()) std::cout << replay_text(session) << '\n';
+        if (judges) judges->print(std::cout << '\n');
     }
     if (options.json.empty()) return;
     Json json = to_json(result, pipeline_json(simulation));
     if (session.scene().pipeline.ledger.check) json["ledger"] = ledger_json(simulation);
     if (session.replays()) json["replay"] = replay_json(session);
+    if (judges) json["judges"] = judges->json();
     json["host"] = host_block();
     json["command"] = command_line();
     write_json(json, options.json);
@@ -171,6 +175,11 @@ int run_scene(const RunOptions& options, const PluginLibrary& plugins, Host& hos
     Session session(std::move(subject), plugins, host, steps);
     if (!options.record.record.empty()) session.record();
     if (!options.capsule.empty()) session.simulation().keep_steps();
+    std::optional<Judges> judges;
+    if (options.judge.wanted()) {
+        judges.emplace(options.judge, session.simulation().pipeline(), plugins, host);
+        session.simulation().watch(*judges);
+    }
     std::optional<Film> film;
     if (options.film.wanted()) film.emplace(options.film, session.scene(), session.simulation(), plugins, host, steps);
     std::optional<Trace> trace;
@@ -179,7 +188,7 @@ int run_scene(const RunOptions& options, const PluginLibrary& plugins, Host& hos
     if (film) film->finish();
     if (trace) trace->finish();
     if (!options.record.record.empty()) session.write_recording(options.record.record);
-    write_result(options, session);
+    write_result(options, session, judges);
     if (!complaint.empty()) std::cerr << "kolize: " << complaint << '\n';
     return complaint.empty() && !(has_to_agree && session.parting()) ? 0 : 1;
 }
@@ -232,6 +241,8 @@ void add_run(CLI::App& app, int& exit_code) {
         "--trace", options->trace, "Write the calls of all stages as a Chrome trace (JSON): opens in Perfetto");
     add_film_options(*command, options->film);
     add_record_options(*command, options->record);
+    add_judge_options(*command, options->judge);
+    expect->excludes("--judge")->excludes("--disagreements");
     expect->excludes("--record")->excludes("--replay");
     expect->excludes(trace);
     expect->excludes("--frames")->excludes("--video");
