@@ -1,6 +1,6 @@
 #include "search.h"
 
-#include <kolize/observer.h>
+#include "judge/judges.h"
 
 #include <algorithm>
 #include <numeric>
@@ -16,54 +16,6 @@ constexpr double noise = 1.25;                                // one short run m
 constexpr std::uint64_t fewest_rounds = 5, most_rounds = 50;  // of what is compared by time alone
 constexpr double compared_s = 0.1;                            // so long each, within these numbers
 constexpr unsigned order_seed = 20261123;
-
-// Asks another narrowphase about the pairs that the run's own was asked about.
-class ErrorCounter final : public Observer {
-public:
-    ErrorCounter(const std::string& judge, const World& world, const PluginLibrary& plugins, Host& host)
-        : judge_(plugins.make<Narrowphase>({.plugin = judge, .where = {}, .settings = {}}, host)),
-          takes_(plugins.require(StageKind::narrowphase, judge).descriptor->capabilities.shape_kinds) {
-        judge_->prepare(world);
-    }
-
-    void narrowphase_found(const NarrowphaseInput& input, bool touching, const Contacts& found) override {
-        if (touching) return;
-        pairs_.clear();
-        for (const Pair& pair : input.pairs)
-            if (takes(input.world, pair.a) && takes(input.world, pair.b)) pairs_.push_back(pair);
-        detail_.assign(pairs_.size(), Detail::overlap);
-        truth_.clear();
-        judge_->find_contacts({input.world, pairs_, detail_}, truth_);
-        const auto pairs_of = [](const Contacts& contacts, std::vector<Pair>& pairs) {
-            pairs.clear();
-            for (const Contact& c : contacts.rows)
-                if (pairs.empty() || pairs.back() != Pair{c.a, c.b}) pairs.push_back({c.a, c.b});
-        };
-        pairs_of(truth_, overlapping_);
-        pairs_of(found, found_);
-        missed_ += count_missing(overlapping_, found_);
-        std::erase_if(found_, [&](const Pair& p) { return !std::binary_search(pairs_.begin(), pairs_.end(), p); });
-        false_hits_ += count_missing(found_, overlapping_);
-    }
-    std::uint64_t missed() const { return missed_; }
-    std::uint64_t false_hits() const { return false_hits_; }
-
-private:
-    // Both sorted: how many of the first are not in the second.
-    static std::uint64_t count_missing(const std::vector<Pair>& wanted, const std::vector<Pair>& given) {
-        std::uint64_t count = 0;
-        for (const Pair& pair : wanted) count += !std::binary_search(given.begin(), given.end(), pair);
-        return count;
-    }
-    bool takes(const World& world, std::uint32_t body) const { return takes_ & bit(world.shape_of(body).kind); }
-
-    StagePtr<Narrowphase> judge_;
-    std::uint32_t takes_;
-    std::vector<Pair> pairs_, overlapping_, found_;
-    std::vector<Detail> detail_;
-    Contacts truth_;
-    std::uint64_t missed_ = 0, false_hits_ = 0;
-};
 
 class Search {
 public:
@@ -91,6 +43,12 @@ private:
         return load_scene(question_.scene, options, plugins_);
     }
 
+    static void read_errors(const Judges& judges, Trial& trial) {
+        const Verdict& driver = judges.verdicts().front();
+        trial.missed = driver.misses.count;
+        trial.false_hits = driver.false_hits.count;
+    }
+
     // Stops where a limit that can only be broken once is broken.
     Trial measure(const Settings& settings, double time, bool judged = true) const {
         Trial trial;
@@ -99,22 +57,22 @@ private:
             const double dt = scene.pipeline.step.dt;
             const std::uint64_t steps = std::max(fewest_steps, steps_in(time, dt));
             Simulation simulation(scene, plugins_, host_, steps);
-            std::optional<ErrorCounter> errors;
+            std::optional<Judges> judges;
             if (judged && !question_.judge.empty())
-                simulation.watch(errors.emplace(question_.judge, simulation.world(), plugins_, host_));
+                simulation.watch(judges.emplace(JudgeOptions{.plugins = {question_.judge}, .disagreements = {}},
+                                                scene.pipeline, plugins_, host_));
             std::uint64_t done = 0;
             while (done < steps) {
                 simulation.step();
                 ++done;
                 if (question_.limits.drift && simulation.reading().energy_drift > *question_.limits.drift) break;
-                if (errors && errors->missed() > question_.limits.missed) break;
-                if (errors && errors->false_hits() > question_.limits.false_hits) break;
+                if (judges) read_errors(*judges, trial);
+                if (trial.missed > question_.limits.missed || trial.false_hits > question_.limits.false_hits) break;
             }
             const RunResult result = simulation.result();
             trial.cost_ms = 1e3 * result.step.total_s / static_cast<double>(done) * (scene_dt_ / dt);
             trial.drift = result.energy_drift;
             trial.penetration = result.max_penetration_m;
-            if (errors) trial.missed = errors->missed(), trial.false_hits = errors->false_hits();
             trial.escaped = result.escaped;
             trial.stuck = result.stuck;
             trial.hash = result.state_hash;
