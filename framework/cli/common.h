@@ -28,6 +28,7 @@ void add_advise(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
+void add_explain(CLI::App& app, int& exit_code);
 void add_massprops(CLI::App& app);
 void add_plugins(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);

@@ -71,9 +71,11 @@ Json pipeline_json(const Simulation& simulation) {
     narrowphase["walls"] = simulation.walls();
     narrowphase["cull"] = simulation.pipeline().cull;
     const StepConfig& step = simulation.step_config();
+    const ModelConfig model = simulation.pipeline().model;
     return {{"broadphase", stage_json(simulation.broadphase())},
             {"narrowphase", narrowphase},
             {"response", responses},
+            {"model", {{"detail", model.detail}, {"bounding_spheres", model.bounding_spheres}}},
             {"step",
              {{"dt", step.dt},
               {"substeps", step.substeps},

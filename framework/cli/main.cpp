@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
     kolize::cli::add_view(app, exit_code);
     kolize::cli::add_compare(app, exit_code);
     kolize::cli::add_advise(app, exit_code);
+    kolize::cli::add_explain(app, exit_code);
     kolize::cli::add_bench(app, exit_code);
     kolize::cli::add_check(app, exit_code);
     kolize::cli::add_massprops(app);

@@ -1,5 +1,7 @@
 // kolize run: one scene through one pipeline.
 #include "common.h"
+#include "explain/features.h"
+#include "explain/thickness.h"
 #include "film/film.h"
 #include "judge/judges.h"
 #include "session.h"
@@ -25,7 +27,7 @@ struct RunOptions {
     int threads = all_cores();
     std::string json;
     std::string expect;
-    bool ledger = false;
+    bool ledger = false, force_all = false;
     std::string capsule;
     std::optional<std::uint64_t> capsule_at;
     std::string trace;
@@ -71,6 +73,10 @@ void print_reports(const Simulation& simulation) {
 SceneOptions scene_options(const RunOptions& options) {
     Settings settings = parse_settings(options.set);
     if (options.ledger) settings.emplace_back("ledger.check", "true");
+    if (options.force_all) {
+        const Settings all = all_modelled();
+        settings.insert(settings.end(), all.begin(), all.end());
+    }
     return {options.pipeline, settings, plugin_defaults()};
 }
 
@@ -101,8 +107,35 @@ void require_step(std::uint64_t wanted, std::uint64_t first, std::uint64_t count
                     std::to_string(count) + ", from step " + std::to_string(first));
 }
 
+// Tells once when a body begins to move so far in a step that it may pass through another unseen.
+class LeapWarning {
+public:
+    explicit LeapWarning(Host& host) : host_(host) {}
+
+    void look(const Simulation& simulation) {
+        const StepConfig& step = simulation.step_config();
+        if (has_warned_ || step.mode == "continuous") return;
+        const double dt = step.dt / step.substeps;
+        const World& world = simulation.world();
+        if (!watch_ || !watch_->fits(world, dt)) watch_.emplace(world, dt);
+        const Leap leap = watch_->largest(world);
+        if (!(leap.share() > 1)) return;
+        has_warned_ = true;
+        host_.warn("from step " + std::to_string(simulation.step_number()) + " on body '" + world.name[leap.body] +
+                   "' may pass through another one between two steps: they close " + number(leap.travel) +
+                   " m in a step and are " + number(leap.room) + " m thick together; step.mode=" + step.mode +
+                   " does not see that, step.mode=continuous does");
+    }
+
+private:
+    Host& host_;
+    std::optional<LeapWatch> watch_;
+    bool has_warned_ = false;
+};
+
 // Returns what the ledger complains of, or "".
-std::string advance(const RunOptions& options, Session& session, std::uint64_t count, std::optional<Film>& film) {
+std::string advance(const RunOptions& options, Session& session, std::uint64_t count, std::optional<Film>& film,
+                    Host& host) {
     const Scene& scene = session.scene();
     const Simulation& simulation = session.simulation();
     const std::uint64_t first = scene.capsule_step.value_or(0);
@@ -110,6 +143,8 @@ std::string advance(const RunOptions& options, Session& session, std::uint64_t c
     std::string complaint;
     Progress progress("run", count);
     if (film) film->look(simulation);
+    LeapWarning leaps(host);
+    leaps.look(simulation);
     for (std::uint64_t step = first; step < first + count; ++step, progress.advance()) {
         if (options.capsule_at == step) write_capsule(options, simulation.capture(), "asked for by --capsule-at");
         try {
@@ -118,6 +153,7 @@ std::string advance(const RunOptions& options, Session& session, std::uint64_t c
             throw std::runtime_error(complaint.empty() ? with_capsule(failure.what(), options, scene, simulation)
                                                        : complaint + "; then " + failure.what());
         }
+        leaps.look(simulation);
         if (film) film->look(simulation);
         if (complaint.empty() && simulation.first_break())
             complaint =
@@ -184,7 +220,7 @@ int run_scene(const RunOptions& options, const PluginLibrary& plugins, Host& hos
     if (options.film.wanted()) film.emplace(options.film, session.scene(), session.simulation(), plugins, host, steps);
     std::optional<Trace> trace;
     if (!options.trace.empty()) session.simulation().watch(trace.emplace(options.trace, session.simulation()));
-    const std::string complaint = advance(options, session, steps, film);
+    const std::string complaint = advance(options, session, steps, film, host);
     if (film) film->finish();
     if (trace) trace->finish();
     if (!options.record.record.empty()) session.write_recording(options.record.record);
@@ -233,6 +269,8 @@ void add_run(CLI::App& app, int& exit_code) {
     CLI::Option* ledger =
         command->add_flag("--ledger", options->ledger,
                           "Check after every stage what it changed; the first break is told, and its step kept");
+    CLI::Option* all = command->add_flag("--force-all", options->force_all,
+                                         "Model everything that the pipeline leaves out: see kolize explain");
     CLI::Option* capsule = command->add_option("--capsule", options->capsule,
                                                "File to keep the first step in that fails or breaks the ledger");
     CLI::Option* capsule_at =
@@ -247,7 +285,7 @@ void add_run(CLI::App& app, int& exit_code) {
     expect->excludes(trace);
     expect->excludes("--frames")->excludes("--video");
     expect->excludes(pipeline)->excludes("--set")->excludes("--time")->excludes("--steps");
-    expect->excludes(ledger)->excludes(capsule)->excludes(capsule_at);
+    expect->excludes(ledger)->excludes(all)->excludes(capsule)->excludes(capsule_at);
     command->footer("Example: kolize run scene.toml --pipeline fast.toml --set step.dt=0.002 --time 5 --json -");
     command->callback([options, &exit_code] { exit_code = run(*options); });
 }

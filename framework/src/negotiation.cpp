@@ -59,7 +59,7 @@ void Pipeline::negotiate(const PipelineConfig& config, const PluginLibrary& plug
                                 plugins, StageKind::narrowphase,
                                 [](const Capabilities& c, std::uint32_t needed) { return c.gives >= Detail(needed); },
                                 static_cast<std::uint32_t>(response.needs)));
-        rules[i].detail = std::min(given, response.uses);
+        rules[i].detail = config.model.detail == "most" ? given : std::min(given, response.uses);
     }
     const std::size_t kinds = world.kinds.size();
     rule_of_kinds_.assign(kinds * kinds, no_rule);

@@ -56,7 +56,7 @@ Pipeline::Pipeline(const Scene& scene, const PluginLibrary& plugins, Host& host,
     for (std::size_t i = 0; i < scene.rooms.size() && !scene.capsule_step; ++i)
         add_walls(world, scene.rooms[i], walls, i);
     negotiate(scene.pipeline, plugins);
-    use_bounding_spheres();
+    if (scene.pipeline.model.bounding_spheres) use_bounding_spheres();
     restore_memory(scene);
     narrowphase->prepare(world);
     if (scene.pipeline.cull != "none") cull_.emplace(scene.pipeline.cull, world);

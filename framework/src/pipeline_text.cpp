@@ -22,6 +22,12 @@ void write_step(Writer& out, const StepConfig& step, const std::string& prefix) 
     out.plain("max_impacts", std::int64_t(step.max_impacts));
 }
 
+void write_model(Writer& out, const ModelConfig& model, const std::string& prefix) {
+    out.table("[" + prefix + "model]");
+    out.plain("detail", model.detail);
+    out.plain("bounding_spheres", model.bounding_spheres);
+}
+
 void write_ledger(Writer& out, const LedgerConfig& ledger, const std::string& prefix) {
     out.table("[" + prefix + "ledger]");
     out.plain("check", ledger.check);
@@ -41,6 +47,7 @@ void write_stage(Writer& out, const std::string& head, const StageConfig& stage)
 
 void write_pipeline(Writer& out, const PipelineConfig& pipeline, const std::string& prefix) {
     write_step(out, pipeline.step, prefix);
+    write_model(out, pipeline.model, prefix);
     write_ledger(out, pipeline.ledger, prefix);
     write_stage(out, "[" + prefix + "broadphase]", pipeline.broadphase);
     write_stage(out, "[" + prefix + "narrowphase]", pipeline.narrowphase);

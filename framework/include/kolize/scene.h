@@ -41,6 +41,12 @@ struct LedgerConfig {
     double penetration = infinity;    // m
 };
 
+// [model]: what is left out because no rule needs it.
+struct ModelConfig {
+    std::string detail = "needed";  // of contacts: needed | most, that is all that the narrowphase can give
+    bool bounding_spheres = true;  // bodies are balls to the narrowphase where all rules that take them ask for no more
+};
+
 struct PipelineConfig {
     StageConfig broadphase;
     StageConfig narrowphase;
@@ -48,6 +54,7 @@ struct PipelineConfig {
     std::string cull = "none";   // narrowphase.cull: none | sphere | aabb | obb | kdop18 | kdop26
     std::vector<ResponseRule> responses;
     StepConfig step;
+    ModelConfig model;
     LedgerConfig ledger;
 };
 

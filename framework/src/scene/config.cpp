@@ -10,7 +10,8 @@ namespace kolize::config {
 namespace {
 
 const std::string setting_prefix = "--set ";
-const std::vector<std::string> pipeline_tables = {"step", "broadphase", "narrowphase", "response", "ledger", "render"};
+const std::vector<std::string> pipeline_tables = {"step",  "broadphase", "narrowphase", "response",
+                                                  "model", "ledger",     "render"};
 
 SourceLocation location(const toml::source_region& source) {
     const std::string file = source.path ? *source.path : "";

@@ -9,7 +9,7 @@ using namespace config;
 
 const std::vector<std::string> scene_tables = {"schema", "world",  "step",       "material",    "shape",
                                                "body",   "room",   "broadphase", "narrowphase", "response",
-                                               "ledger", "render", "capsule",    "recording"};
+                                               "model",  "ledger", "render",     "capsule",     "recording"};
 
 void require_known_tables(const toml::table& config) {
     for (const auto& [key, node] : config) {

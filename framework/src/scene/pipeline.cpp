@@ -32,6 +32,15 @@ StepConfig read_step(const toml::table& config) {
     return step;
 }
 
+ModelConfig read_model(const toml::table& config) {
+    TableReader reader(table(config, "model"), "[model]");
+    ModelConfig model;
+    model.detail = reader.choice("detail", model.detail, {"needed", "most"});
+    model.bounding_spheres = reader.boolean("bounding_spheres", model.bounding_spheres);
+    reader.finish();
+    return model;
+}
+
 LedgerConfig read_ledger(const toml::table& config) {
     TableReader reader(table(config, "ledger"), "[ledger]");
     LedgerConfig ledger;
@@ -91,6 +100,7 @@ PipelineConfig read_pipeline(const toml::table& config, const PluginDefaults& de
     pipeline.cull = reader.choice("cull", pipeline.cull, {"none", "auto", "sphere", "aabb", "obb", "kdop18", "kdop26"});
     pipeline.responses = read_responses(config, defaults.response);
     pipeline.step = read_step(config);
+    pipeline.model = read_model(config);
     pipeline.ledger = read_ledger(config);
     return pipeline;
 }

@@ -1,0 +1,275 @@
+#include "compare/comparison.h"
+
+#include <kolize/capsule.h>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <tuple>
+
+namespace kolize::cli {
+namespace {
+
+constexpr std::size_t moments = 200;  // of a course
+constexpr double seconds_each = 2;
+constexpr int fewest_rounds = 7, most_rounds = 31, most_warm_up = 5;
+constexpr double steady = 0.02;
+
+StageTime median_time(const std::vector<RunResult>& runs, StageTime RunResult::*stage) {
+    const auto of = [&](double StageTime::*quantity) {
+        std::vector<double> values;
+        for (const RunResult& run : runs) values.push_back(run.*stage.*quantity);
+        return median(std::move(values));
+    };
+    return {of(&StageTime::median_us), of(&StageTime::p95_us), of(&StageTime::total_s)};
+}
+
+RunResult summarize(const std::vector<RunResult>& runs) {
+    RunResult summary = runs.front();
+    for (StageTime RunResult::*stage : {&RunResult::integrate, &RunResult::broadphase, &RunResult::narrowphase,
+                                        &RunResult::response, &RunResult::step})
+        summary.*stage = median_time(runs, stage);
+    return summary;
+}
+
+// All that a run gave and that no clock has to do with. Bits, so that NaN equals itself.
+auto outcome(const RunResult& run) {
+    const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+    return std::tuple(run.pairs, run.contacts, run.triangle_tests, run.events, run.unresolved, bits(run.energy_drift),
+                      bits(run.momentum_drift), bits(run.angular_momentum_drift), bits(run.max_penetration_m),
+                      run.escaped, run.stuck, run.state_hash);
+}
+
+bool same_outcome(const std::vector<RunResult>& runs) {
+    return std::all_of(runs.begin(), runs.end(),
+                       [&](const RunResult& run) { return outcome(run) == outcome(runs.front()); });
+}
+
+// Of the scene as it begins, without the pipeline, and of how long it runs.
+std::uint64_t question_of(const Variant& variant) {
+    Scene scene = variant.scene;
+    scene.pipeline = {};
+    scene.capsule_step = 0;
+    scene.memory.clear();
+    std::uint64_t hash = 14695981039346656037ull;
+    const auto add = [&](const std::string& text) {
+        for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+    };
+    add(capsule_text(scene, ""));
+    add(number(variant.time, 12));
+    return hash;
+}
+
+// The places of all bodies at even moments.
+struct Path {
+    std::vector<double> time;
+    std::vector<std::vector<Vec3>> places;
+};
+
+// Calls look(simulation, time) at even moments of the run, the end being the last.
+template <class Look>
+RunResult run(const Variant& variant, std::uint64_t steps, const PluginLibrary& plugins, Host& host, Look&& look) {
+    Simulation simulation(variant.scene, plugins, host, steps);
+    for (std::uint64_t i = 1; i <= steps; ++i) {
+        simulation.step();
+        look(simulation, i);
+    }
+    return simulation.result();
+}
+
+bool is_moment(std::uint64_t step, std::uint64_t steps) {
+    const std::uint64_t count = std::min<std::uint64_t>(moments, steps);
+    return step * count / steps != (step - 1) * count / steps;
+}
+
+std::vector<Vec3> places_of(const World& world, std::size_t bodies) {
+    std::vector<Vec3> places;
+    for (std::uint32_t body = 0; body < bodies; ++body) places.push_back(world.position[body]);
+    return places;
+}
+
+Path path_of(Variant variant, int finer, const PluginLibrary& plugins, Host& host) {
+    const std::size_t bodies = variant.scene.world.size();
+    const std::uint64_t steps = variant.steps;
+    variant.scene.pipeline.step.dt /= finer;
+    Path path;
+    run(variant, steps * static_cast<std::uint64_t>(finer), plugins, host, [&](const Simulation& s, std::uint64_t i) {
+        if (i % static_cast<std::uint64_t>(finer) != 0 || !is_moment(i / static_cast<std::uint64_t>(finer), steps))
+            return;
+        path.time.push_back(static_cast<double>(i) * variant.scene.pipeline.step.dt);
+        path.places.push_back(places_of(s.world(), bodies));
+    });
+    return path;
+}
+
+// Median radius of the bodies that move.
+double body_size(const World& world) {
+    std::vector<double> radii;
+    for (std::uint32_t body = 0; body < world.size(); ++body)
+        if (!world.is_static[body]) radii.push_back(world.shape_of(body).radius);
+    return median(std::move(radii));
+}
+
+// Root of the mean square distance of the moving bodies, over the size of a body.
+double distance(const World& world, const std::vector<Vec3>& a, const std::vector<Vec3>& b, double size) {
+    double sum = 0, count = 0;
+    for (std::uint32_t body = 0; body < a.size(); ++body)
+        if (!world.is_static[body]) sum += (a[body] - b[body]).squaredNorm(), ++count;
+    return count > 0 && size > 0 ? std::sqrt(sum / count) / size : 0;
+}
+
+void follow(Variant& variant, const Path* reference, const std::string& judge, const PluginLibrary& plugins,
+            Host& host) {
+    const World& world = variant.scene.world;
+    const double size = body_size(world);
+    Simulation simulation(variant.scene, plugins, host, variant.steps);
+    variant.effective = pipeline_json(simulation);
+    std::optional<Judges> judges;
+    if (!judge.empty())
+        simulation.watch(judges.emplace(JudgeOptions{.plugins = {judge}, .disagreements = {}}, variant.scene.pipeline,
+                                        plugins, host));
+    Course& course = variant.course;
+    for (std::uint64_t i = 1; i <= variant.steps; ++i) {
+        simulation.step();
+        if (!is_moment(i, variant.steps)) continue;
+        const double time = static_cast<double>(i) * variant.scene.pipeline.step.dt;
+        course.time.push_back(time);
+        course.energy_error.push_back(simulation.reading().energy_drift);
+        if (!reference) continue;
+        const auto at = std::min_element(reference->time.begin(), reference->time.end(),
+                                         [&](double a, double b) { return std::abs(a - time) < std::abs(b - time); });
+        if (std::abs(*at - time) <= 1e-9 * time)
+            course.path_error.push_back(
+                distance(world, places_of(simulation.world(), world.size()),
+                         reference->places[static_cast<std::size_t>(at - reference->time.begin())], size));
+        else
+            course.path_error.push_back(std::numeric_limits<double>::quiet_NaN());
+    }
+    course.energy_slope = theil_sen_slope(course.time, course.energy_error);
+    if (judges) variant.judged = judges->verdicts().front();
+}
+
+bool is_safe(const Variant& variant) {
+    const RunResult& result = variant.summary;
+    return variant.repeatable && result.escaped == 0 && result.stuck == 0 && std::isfinite(result.energy_drift) &&
+           !(variant.judged && variant.judged->misses.count > 0);
+}
+
+bool beats(const Variant& winner, const Variant& loser) {
+    const double fast = winner.summary.step.median_us, slow = loser.summary.step.median_us;
+    const auto drift = [](const Variant& v) { return std::max(v.summary.energy_drift, drift_floor); };
+    return (fast < slow * (1 - time_noise) && drift(winner) <= drift(loser)) ||
+           (fast <= slow && drift(winner) < drift(loser));
+}
+
+template <class TakesPart>
+bool on_front(const std::vector<Variant>& variants, const Variant& variant, TakesPart&& takes_part) {
+    return takes_part(variant) && std::none_of(variants.begin(), variants.end(), [&](const Variant& other) {
+               return takes_part(other) && beats(other, variant);
+           });
+}
+
+std::vector<std::string> broken_gates(const Variant& variant, const Gates& gates) {
+    std::vector<std::string> broken;
+    const double ms = 1e-3 * variant.summary.step.median_us;
+    if (gates.budget_ms && !(ms <= *gates.budget_ms))
+        broken.push_back(number(ms) + " ms a step, above " + number(*gates.budget_ms));
+    if (gates.drift && !(variant.summary.energy_drift <= *gates.drift))
+        broken.push_back("energy drift " + number(variant.summary.energy_drift) + ", above " + number(*gates.drift));
+    if (gates.missed && variant.judged && variant.judged->misses.count > *gates.missed)
+        broken.push_back(std::to_string(variant.judged->misses.count) + " pairs missed, more than " +
+                         std::to_string(*gates.missed));
+    return broken;
+}
+
+}  // namespace
+
+std::vector<double> Variant::step_us() const {
+    std::vector<double> times;
+    for (const RunResult& run : runs) times.push_back(run.step.median_us);
+    return times;
+}
+
+void measure_errors(std::vector<Variant>& variants, const std::string& judge, int finer, const PluginLibrary& plugins,
+                    Host& host) {
+    for (const Variant& variant : variants) Simulation(variant.scene, plugins, host, 1);
+    Progress progress("compare: errors", variants.size() + (finer > 0));
+    std::optional<Path> reference;
+    if (finer > 0) {
+        reference = path_of(variants.front(), finer, plugins, host);
+        progress.advance();
+    }
+    for (Variant& variant : variants) {
+        variant.question = question_of(variant);
+        follow(variant, reference ? &*reference : nullptr, judge, plugins, host);
+        progress.advance();
+    }
+}
+
+int run_rounds(std::vector<Variant>& variants, int repeat, const PluginLibrary& plugins, Host& host) {
+    const auto time_once = [&](const Variant& variant) {
+        return run(variant, variant.steps, plugins, host, [](const Simulation&, std::uint64_t) {});
+    };
+    std::vector<double> warm;
+    const auto is_steady = [&] {
+        if (warm.size() < 3) return false;
+        const auto [low, high] = std::minmax_element(warm.end() - 3, warm.end());
+        return *high <= *low * (1 + steady);
+    };
+    double longest_s = 0;
+    while (warm.size() < std::size_t(most_warm_up) && !is_steady()) {
+        for (Variant& variant : variants) {
+            const RunResult result = time_once(variant);
+            longest_s = std::max(longest_s, result.step.total_s);
+            if (&variant == &variants.front()) warm.push_back(result.step.median_us);
+        }
+    }
+    if (repeat == 0)
+        repeat = std::clamp(static_cast<int>(seconds_each / std::max(longest_s, 1e-3)), fewest_rounds, most_rounds);
+    std::vector<std::size_t> order(variants.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::mt19937 random(order_seed);
+    Progress progress("compare", variants.size() * static_cast<std::size_t>(repeat));
+    for (int round = 0; round < repeat; ++round) {
+        std::shuffle(order.begin(), order.end(), random);
+        for (const std::size_t i : order) {
+            variants[i].runs.push_back(time_once(variants[i]));
+            progress.advance();
+        }
+    }
+    for (Variant& variant : variants) {
+        variant.summary = summarize(variant.runs);
+        variant.repeatable = same_outcome(variant.runs);
+        variant.step = median_estimate(variant.step_us());
+    }
+    return static_cast<int>(warm.size());
+}
+
+void draw_conclusions(std::vector<Variant>& variants, std::size_t baseline, const Gates& gates) {
+    const Variant& base = variants[baseline];
+    for (Variant& variant : variants) {
+        variant.ranked = variant.question == base.question;
+        variant.ratio = paired_ratio(variant.step_us(), base.step_us());
+        variant.verdict = &variant == &base     ? "baseline"
+                          : !variant.ranked     ? "not ranked: another question"
+                          : !variant.repeatable ? "not ranked: results differ from run to run"
+                                                : verdict(variant.ratio);
+        variant.breaks = broken_gates(variant, gates);
+    }
+    const auto ranked = [](const Variant& v) { return v.ranked && v.repeatable && !v.again; };
+    const auto safe = [&](const Variant& v) { return ranked(v) && is_safe(v); };
+    for (Variant& variant : variants) {
+        variant.front = on_front(variants, variant, ranked);
+        variant.safe_front = on_front(variants, variant, safe);
+        if (!ranked(variant) || variant.front) continue;
+        for (const Variant& other : variants)
+            if (ranked(other) && (is_safe(other) || !is_safe(variant)) && beats(other, variant) &&
+                variant.dominated_by.empty())
+                variant.dominated_by = other.label;
+    }
+}
+
+}  // namespace kolize::cli
