@@ -123,6 +123,21 @@ TEST_CASE("pairs that a judge does not take are counted, and touching is not jud
     CHECK(touching["calls"] == 0);
 }
 
+TEST_CASE("a judge whose contacts make no sense is not counted as asked", "[cli][judge]") {
+    const Shell shell;
+    write_scene(shell);
+    std::filesystem::copy_file(KOLIZE_BAD_PLUGIN_DIR "/liar_narrowphase.so", shell.folder.path() / "liar.so");
+    const Outcome run = shell.kolize("run scene.toml --judge exact,liar,moller --json -");
+    INFO(run.err);
+    REQUIRE(run.code == 0);
+    const json judges = json::parse(run.out)["judges"];
+    const json liar = verdict(judges, "liar", "judge");
+    CHECK(liar["asked"] == 0);
+    CHECK(liar["failed_calls"] == judges["calls"]);
+    CHECK(liar["first_failure"].get<std::string>().find("bodies 0 and 1 without a direction") != std::string::npos);
+    CHECK(verdict(judges, "moller", "judge")["asked"] == verdict(judges, "exact", "truth")["asked"]);
+}
+
 TEST_CASE("bodies that are no meshes are kept whole", "[cli][judge]") {
     const Shell shell;
     shell.folder.write("scene.toml", R"([step]

@@ -46,6 +46,14 @@ const Contact& deepest(std::span<const Contact> rows) {
                              [](const Contact& x, const Contact& y) { return x.depth < y.depth; });
 }
 
+// Throws std::runtime_error.
+void require_sense(std::span<const Contact> rows, Detail detail) {
+    for (const Contact& row : rows)
+        if (detail != Detail::overlap && !(std::abs(row.normal.norm() - 1) <= 1e-6 && std::isfinite(row.depth)))
+            throw std::runtime_error("it reported a contact of bodies " + std::to_string(row.a) + " and " +
+                                     std::to_string(row.b) + " without a direction or a depth");
+}
+
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 // Of contacts that are as deep as the deepest, but for rounding, the one that lies best counts: which of several alike
@@ -156,6 +164,7 @@ Judges::Testimony Judges::ask(std::size_t who, const NarrowphaseInput& input, st
         witness.stage().find_contacts({input.world, pairs, detail}, said.contacts);
         const std::chrono::duration<double> time = Span::Clock::now() - start;
         const auto rows = rows_of_pairs(pairs, said.contacts.rows);
+        for (std::size_t i = 0; i < pairs.size(); ++i) require_sense(rows[i], detail[i]);
         for (std::size_t i = 0, next = 0; i < count; ++i)
             if (said.asked[i]) said.rows[i] = rows[next++];
         verdict.call_us.add(1e6 * time.count());
