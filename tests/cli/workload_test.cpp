@@ -186,7 +186,7 @@ TEST_CASE("bad input of workloads is refused in a sentence", "[cli][workload]") 
     write_scene(shell);
     const Outcome full = shell.kolize("run scene.toml --save-workload .");
     CHECK(full.code == 2);
-    CHECK(full.err == "kolize: folder '.' is not empty; a workload wants one of its own\n");
+    CHECK(full.err == "kolize: folder '.' is not empty; one of its own is wanted\n");
     for (const std::string steps : {"5:5", "1:2:0", "a:b", "1:2:3:4", "-1:3"}) {
         CAPTURE(steps);
         const Outcome wrong = shell.kolize("run scene.toml --save-workload v --workload-steps=" + steps);

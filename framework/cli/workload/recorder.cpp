@@ -1,5 +1,7 @@
 #include "recorder.h"
 
+#include "empty_folder.h"
+
 #include <kolize/capsule.h>
 
 #include <nlohmann/json.hpp>
@@ -17,14 +19,6 @@ std::string exact(const Vec3& v) { return exact_text(v.x()) + ' ' + exact_text(v
 std::string hex_word(std::uint64_t word) {
     char digits[16];
     return {digits, std::to_chars(digits, digits + sizeof digits, word, 16).ptr};
-}
-
-void make_empty_folder(const std::filesystem::path& folder) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw Error("folder '" + folder.string() + "' cannot be made: " + error.message());
-    if (!std::filesystem::is_empty(folder, error) || error)
-        throw Error("folder '" + folder.string() + "' is not empty; a workload wants one of its own");
 }
 
 }  // namespace
