@@ -35,6 +35,16 @@ std::vector<PlannedVariant> plan_variants(const BenchOptions& options, StageKind
     return variants;
 }
 
+bool is_maker(const StageConfig& maker, const LoadedPlugin& plugin, const Stage& stage) {
+    if (maker.plugin != plugin.descriptor->name) return false;
+    const auto settings = effective_settings(plugin, stage);
+    return std::all_of(settings.begin(), settings.end(), [&](const auto& setting) {
+        const auto made = maker.settings.find(setting.first);
+        return made != maker.settings.end() &&
+               plugin.parameters.find(setting.first)->coerce(made->second.value) == setting.second;
+    });
+}
+
 Json bench_json(const BenchOptions& options, StageKind stage) {
     return {{"stage", to_string(stage)},  {"workload", options.workload}, {"repeat", options.repeat},
             {"threads", options.threads}, {"host", host_block()},         {"command", command_line()}};
@@ -79,11 +89,18 @@ void add_bench(CLI::App& app, int& exit_code) {
               "Without a choice of broadphase.plugin all that are found are compared.\n"
               "Example: kolize bench broadphase boxes.csv --vary broadphase.plugin=grid,bsp --json -",
               exit_code);
-    add_stage(*bench, StageKind::narrowphase, "Test pairs of triangles for intersection",
-              "CSV (a0x,a0y,a0z,a1x,...,b2z, and hit, 0 or 1, if the true answer is known; a row per pair)",
+    add_stage(*bench, StageKind::narrowphase, "Find the contacts of a run, or test pairs of triangles",
+              "Folder of run --save-workload, or CSV (a0x,a0y,a0z,a1x,...,b2z, and hit, 0 or 1, if the true answer is "
+              "known; a row per pair)",
               bench_narrowphase,
-              "Without a choice of narrowphase.plugin all that test triangle by triangle are compared.\n"
-              "Example: kolize bench narrowphase pairs.csv --vary narrowphase.plugin=moller,angle_sum --json -",
+              "Without a choice of narrowphase.plugin all that can take the workload are compared.\n"
+              "Example: kolize bench narrowphase pairs.csv --vary narrowphase.plugin=moller,angle_sum --json -\n"
+              "Example: kolize bench narrowphase folder --vary narrowphase.plugin=moller,fcl",
+              exit_code);
+    add_stage(*bench, StageKind::response, "Answer the contacts of a run", "Folder of kolize run --save-workload",
+              bench_response,
+              "Without a choice of response.plugin all that can take the workload are compared.\n"
+              "Example: kolize bench response folder --vary response.plugin=impulse,solver --json -",
               exit_code);
 }
 

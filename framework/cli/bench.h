@@ -30,11 +30,16 @@ bool names_plugin(const BenchOptions& options, StageKind stage);
 
 // The keys that every stage's result begins with.
 Json bench_json(const BenchOptions& options, StageKind stage);
+// Whether a stage is the one that a run was made with, to the last parameter.
+bool is_maker(const StageConfig& maker, const LoadedPlugin& plugin, const Stage& stage);
+
 // The plugin, with the parameters in force.
 Json stage_json(const LoadedPlugin& plugin, const Stage& stage);
 
 // Exit codes.
 int bench_broadphase(const BenchOptions& options);
 int bench_narrowphase(const BenchOptions& options);
+int bench_narrowphase_calls(const BenchOptions& options);  // of a workload that is a folder
+int bench_response(const BenchOptions& options);
 
 }  // namespace kolize::cli

@@ -92,6 +92,7 @@ Json to_json(const BenchOptions& options, const TriangleWorkload& workload, cons
 }  // namespace
 
 int bench_narrowphase(const BenchOptions& options) {
+    if (std::filesystem::is_directory(options.workload)) return bench_narrowphase_calls(options);
     const TriangleWorkload workload = read_triangle_pairs(options.workload);
     const PluginLibrary library =
         open_plugins(options.plugin_path, std::filesystem::path(options.workload).parent_path());

@@ -6,6 +6,7 @@
 #include "judge/judges.h"
 #include "session.h"
 #include "trace.h"
+#include "workload/recorder.h"
 
 #include <kolize/capsule.h>
 
@@ -34,6 +35,7 @@ struct RunOptions {
     FilmOptions film;
     RecordOptions record;
     JudgeOptions judge;
+    WorkloadOptions workload;
 };
 
 void print_stages(const RunResult& result) {
@@ -184,23 +186,40 @@ Json replay_json(const Session& session) {
     return json;
 }
 
-void write_result(const RunOptions& options, const Session& session, const std::optional<Judges>& judges) {
+// Whoever looks on, where the user asked for it.
+struct Onlookers {
+    std::optional<Judges> judges;
+    std::optional<WorkloadRecorder> workload;
+    std::optional<Trace> trace;
+};
+
+void write_result(const RunOptions& options, const Session& session, const Onlookers& onlookers) {
     const Simulation& simulation = session.simulation();
     const RunResult result = simulation.result();
     if (options.json != "-") {
         print_result(result);
         print_reports(simulation);
         if (session.replays()) std::cout << replay_text(session) << '\n';
-        if (judges) judges->print(std::cout << '\n');
+        if (onlookers.judges) onlookers.judges->print(std::cout << '\n');
+        if (onlookers.workload) std::cout << onlookers.workload->summary() << '\n';
     }
     if (options.json.empty()) return;
     Json json = to_json(result, pipeline_json(simulation));
     if (session.scene().pipeline.ledger.check) json["ledger"] = ledger_json(simulation);
     if (session.replays()) json["replay"] = replay_json(session);
-    if (judges) json["judges"] = judges->json();
+    if (onlookers.judges) json["judges"] = onlookers.judges->json();
+    if (onlookers.workload) json["workload"] = onlookers.workload->json();
     json["host"] = host_block();
     json["command"] = command_line();
     write_json(json, options.json);
+}
+
+void watch(const RunOptions& options, Simulation& simulation, const PluginLibrary& plugins, Host& host,
+           Onlookers& onlookers) {
+    if (options.judge.wanted())
+        simulation.watch(onlookers.judges.emplace(options.judge, simulation.pipeline(), plugins, host));
+    if (!options.workload.folder.empty()) simulation.watch(onlookers.workload.emplace(options.workload, simulation));
+    if (!options.trace.empty()) simulation.watch(onlookers.trace.emplace(options.trace, simulation));
 }
 
 int run_scene(const RunOptions& options, const PluginLibrary& plugins, Host& host) {
@@ -211,20 +230,16 @@ int run_scene(const RunOptions& options, const PluginLibrary& plugins, Host& hos
     Session session(std::move(subject), plugins, host, steps);
     if (!options.record.record.empty()) session.record();
     if (!options.capsule.empty()) session.simulation().keep_steps();
-    std::optional<Judges> judges;
-    if (options.judge.wanted()) {
-        judges.emplace(options.judge, session.simulation().pipeline(), plugins, host);
-        session.simulation().watch(*judges);
-    }
+    Onlookers onlookers;
+    watch(options, session.simulation(), plugins, host, onlookers);
     std::optional<Film> film;
     if (options.film.wanted()) film.emplace(options.film, session.scene(), session.simulation(), plugins, host, steps);
-    std::optional<Trace> trace;
-    if (!options.trace.empty()) session.simulation().watch(trace.emplace(options.trace, session.simulation()));
     const std::string complaint = advance(options, session, steps, film, host);
     if (film) film->finish();
-    if (trace) trace->finish();
+    if (onlookers.trace) onlookers.trace->finish();
+    if (onlookers.workload) onlookers.workload->finish();
     if (!options.record.record.empty()) session.write_recording(options.record.record);
-    write_result(options, session, judges);
+    write_result(options, session, onlookers);
     if (!complaint.empty()) std::cerr << "kolize: " << complaint << '\n';
     return complaint.empty() && !(has_to_agree && session.parting()) ? 0 : 1;
 }
@@ -280,7 +295,9 @@ void add_run(CLI::App& app, int& exit_code) {
     add_film_options(*command, options->film);
     add_record_options(*command, options->record);
     add_judge_options(*command, options->judge);
-    expect->excludes("--judge")->excludes("--disagreements");
+    add_workload_options(*command, options->workload);
+    command->get_option("--save-workload")->excludes("--replay");  // what is put in is no part of a workload
+    expect->excludes("--save-workload")->excludes("--judge")->excludes("--disagreements");
     expect->excludes("--record")->excludes("--replay");
     expect->excludes(trace);
     expect->excludes("--frames")->excludes("--video");

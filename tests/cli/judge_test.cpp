@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 using namespace kolize::test;
 using nlohmann::json;
 
@@ -34,6 +36,27 @@ mass = 1
 position = [2e-4, 1.2e-4, 1e-5]
 orientation = [0, 0, 0, 1]
 velocity = [-4e-3, 0, 0]
+)";
+
+// Two that hit each other edge on face.
+const std::string bricks = R"([step]
+dt = 0.01
+time = 1
+[[shape]]
+name = "brick"
+kind = "box"
+half_extents = [0.1, 0.5, 0.2]
+[[body]]
+shape = "brick"
+mass = 1
+position = [-0.5, 0, 0]
+velocity = [1, 0, 0]
+orientation = [0.96, 0.28, 0, 0]
+[[body]]
+shape = "brick"
+mass = 1
+position = [0.5, 0.1, 0.05]
+orientation = [0.96, 0, 0, 0.28]
 )";
 
 void write_scene(const Shell& shell, const std::string& plugin = "any_size") {
@@ -123,6 +146,38 @@ TEST_CASE("pairs that a judge does not take are counted, and touching is not jud
     CHECK(touching["calls"] == 0);
 }
 
+TEST_CASE("a judge whose contacts make no sense is not counted as asked", "[cli][judge]") {
+    const Shell shell;
+    write_scene(shell);
+    std::filesystem::copy_file(KOLIZE_BAD_PLUGIN_DIR "/liar_narrowphase.so", shell.folder.path() / "liar.so");
+    const Outcome run = shell.kolize("run scene.toml --judge exact,liar,moller --json -");
+    INFO(run.err);
+    REQUIRE(run.code == 0);
+    const json judges = json::parse(run.out)["judges"];
+    const json liar = verdict(judges, "liar", "judge");
+    CHECK(liar["asked"] == 0);
+    CHECK(liar["failed_calls"] == judges["calls"]);
+    CHECK(liar["first_failure"].get<std::string>().find("bodies 0 and 1 without a direction") != std::string::npos);
+    CHECK(verdict(judges, "moller", "judge")["asked"] == verdict(judges, "exact", "truth")["asked"]);
+}
+
+TEST_CASE("a judge that gives less detail is held against the truth in that detail", "[cli][judge]") {
+    const Shell shell;
+    shell.folder.write("scene.toml", bricks);
+    const json judges = json::parse(shell.kolize("run scene.toml --judge exact,gjk_epa,sat --json -").out)["judges"];
+    for (const char* plugin : {"gjk_epa", "sat"}) {
+        CAPTURE(plugin);
+        const json one = verdict(judges, plugin, "judge");
+        CHECK(one["misses"]["of"] > 0);
+        CHECK(one["misses"]["count"] == 0);
+        CHECK(one["depth_error_in_radii"]["count"] == one["misses"]["of"]);
+        CHECK(one["depth_error_in_radii"]["max"] < 1e-6);
+        CHECK(one["normal_angle_rad"]["max"] < 1e-6);
+    }
+    const json truth = verdict(judges, "exact", "truth");
+    CHECK(truth["call_us"]["count"] == judges["calls"]);
+}
+
 TEST_CASE("bodies that are no meshes are kept whole", "[cli][judge]") {
     const Shell shell;
     shell.folder.write("scene.toml", R"([step]
@@ -174,4 +229,6 @@ TEST_CASE("bad input of judges and of check CAPSULE is refused in a sentence", "
     CHECK(shell.kolize("check wedge.obj wedge.obj").code == 2);
     CHECK(shell.kolize("check none.toml").code == 2);
     CHECK(shell.kolize("run scene.toml --judge exact --disagreements scene.toml/d").code == 2);
+    CHECK(shell.kolize("run scene.toml --judge exact --disagreements .").err ==
+          "kolize: folder '.' is not empty; one of its own is wanted\n");
 }

@@ -63,20 +63,15 @@ std::uint64_t question_of(const Variant& variant) {
     return hash;
 }
 
-// The places of all bodies at even moments.
+// The places of all bodies at some moments.
 struct Path {
     std::vector<double> time;
     std::vector<std::vector<Vec3>> places;
 };
 
-// Calls look(simulation, time) at even moments of the run, the end being the last.
-template <class Look>
-RunResult run(const Variant& variant, std::uint64_t steps, const PluginLibrary& plugins, Host& host, Look&& look) {
-    Simulation simulation(variant.scene, plugins, host, steps);
-    for (std::uint64_t i = 1; i <= steps; ++i) {
-        simulation.step();
-        look(simulation, i);
-    }
+RunResult run(const Variant& variant, const PluginLibrary& plugins, Host& host) {
+    Simulation simulation(variant.scene, plugins, host, variant.steps);
+    for (std::uint64_t i = 0; i < variant.steps; ++i) simulation.step();
     return simulation.result();
 }
 
@@ -91,17 +86,38 @@ std::vector<Vec3> places_of(const World& world, std::size_t bodies) {
     return places;
 }
 
-Path path_of(Variant variant, int finer, const PluginLibrary& plugins, Host& host) {
-    const std::size_t bodies = variant.scene.world.size();
-    const std::uint64_t steps = variant.steps;
-    variant.scene.pipeline.step.dt /= finer;
+// Of all variants, in order.
+std::vector<double> moments_of(const std::vector<Variant>& variants) {
+    std::vector<double> times;
+    for (const Variant& v : variants)
+        for (std::uint64_t i = 1; i <= v.steps; ++i)
+            if (is_moment(i, v.steps)) times.push_back(static_cast<double>(i) * v.scene.pipeline.step.dt);
+    std::sort(times.begin(), times.end());
+    return times;
+}
+
+// Of the first variant with shorter steps; followed to every time of impact if its narrowphase can do that. Moments
+// that lie between its steps are left out.
+Path reference_path(const std::vector<Variant>& variants, int finer, const PluginLibrary& plugins, Host& host) {
+    Scene scene = variants.front().scene;
+    StepConfig& step = scene.pipeline.step;
+    const std::string& narrowphase = scene.pipeline.narrowphase.plugin;
+    if (plugins.require(StageKind::narrowphase, narrowphase).descriptor->capabilities.time_of_impact)
+        step.mode = "continuous";
+    step.dt /= finer;
+    const std::vector<double> wanted = moments_of(variants);
+    const auto steps = static_cast<std::uint64_t>(std::llround(wanted.back() / step.dt));
+    Simulation simulation(scene, plugins, host, steps);
     Path path;
-    run(variant, steps * static_cast<std::uint64_t>(finer), plugins, host, [&](const Simulation& s, std::uint64_t i) {
-        if (i % static_cast<std::uint64_t>(finer) != 0 || !is_moment(i / static_cast<std::uint64_t>(finer), steps))
-            return;
-        path.time.push_back(static_cast<double>(i) * variant.scene.pipeline.step.dt);
-        path.places.push_back(places_of(s.world(), bodies));
-    });
+    std::size_t next = 0;
+    for (std::uint64_t i = 1; i <= steps; ++i) {
+        simulation.step();
+        const double time = static_cast<double>(i) * step.dt, near = 1e-6 * step.dt;
+        while (next < wanted.size() && wanted[next] < time - near) ++next;
+        if (next == wanted.size() || wanted[next] > time + near) continue;
+        path.time.push_back(time);
+        path.places.push_back(places_of(simulation.world(), scene.world.size()));
+    }
     return path;
 }
 
@@ -199,7 +215,7 @@ void measure_errors(std::vector<Variant>& variants, const std::string& judge, in
     Progress progress("compare: errors", variants.size() + (finer > 0));
     std::optional<Path> reference;
     if (finer > 0) {
-        reference = path_of(variants.front(), finer, plugins, host);
+        reference = reference_path(variants, finer, plugins, host);
         progress.advance();
     }
     for (Variant& variant : variants) {
@@ -210,9 +226,7 @@ void measure_errors(std::vector<Variant>& variants, const std::string& judge, in
 }
 
 int run_rounds(std::vector<Variant>& variants, int repeat, const PluginLibrary& plugins, Host& host) {
-    const auto time_once = [&](const Variant& variant) {
-        return run(variant, variant.steps, plugins, host, [](const Simulation&, std::uint64_t) {});
-    };
+    const auto time_once = [&](const Variant& variant) { return run(variant, plugins, host); };
     std::vector<double> warm;
     const auto is_steady = [&] {
         if (warm.size() < 3) return false;

@@ -1,6 +1,7 @@
 #include "judges.h"
 
 #include "disagreement.h"
+#include "empty_folder.h"
 
 #include <kolize/capsule.h>
 
@@ -16,6 +17,9 @@ struct Judges::Testimony {
     std::vector<Detail> detail;
     std::vector<std::span<const Contact>> rows;  // into contacts, or into the driver's
     Contacts contacts;
+    double seconds = 0;
+    std::uint64_t failures = 0;
+    std::string exception;  // of the call, or ""
 };
 
 namespace {
@@ -44,6 +48,14 @@ StageConfig judge_config(const std::string& name, const StageConfig& driver, con
 const Contact& deepest(std::span<const Contact> rows) {
     return *std::max_element(rows.begin(), rows.end(),
                              [](const Contact& x, const Contact& y) { return x.depth < y.depth; });
+}
+
+// Throws std::runtime_error.
+void require_sense(std::span<const Contact> rows, Detail detail) {
+    for (const Contact& row : rows)
+        if (detail != Detail::overlap && !(std::abs(row.normal.norm() - 1) <= 1e-6 && std::isfinite(row.depth)))
+            throw std::runtime_error("it reported a contact of bodies " + std::to_string(row.a) + " and " +
+                                     std::to_string(row.b) + " without a direction or a depth");
 }
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
@@ -86,10 +98,7 @@ Judges::Judges(const JudgeOptions& options, const PipelineConfig& pipeline, cons
     add(driver, Role::driver);
     for (const std::string& name : names)
         add(judge_config(name, driver, library), witnesses_.size() == 1 ? Role::truth : Role::judge);
-    if (options.disagreements.empty()) return;
-    std::error_code error;
-    std::filesystem::create_directories(options.disagreements, error);
-    if (error) throw Error("folder '" + options.disagreements + "' cannot be made: " + error.message());
+    if (!options.disagreements.empty()) make_empty_folder(options.disagreements);
 }
 
 void Judges::step_begins(std::uint64_t step, const World&) { step_ = step; }
@@ -117,34 +126,40 @@ void Judges::narrowphase_found(const NarrowphaseInput& input, bool touching, con
     if (input.pairs.empty()) return;
     ++calls_;
     prepare(input.world);
-    const Testimony driver = driver_said(input, contacts);
-    const Testimony truth = ask(1, input, input.detail);
+    const Testimony driver = driver_said(input, contacts), truth = ask(1, input, input.detail);
+    count(0, driver);
+    count(1, truth);
     judge(0, input, truth, driver);
-    for (std::size_t who = 2; who < witnesses_.size(); ++who) judge(who, input, truth, ask(who, input, truth.detail));
+    for (std::size_t who = 2; who < witnesses_.size(); ++who) {
+        const Detail most = witnesses_[who].gives();
+        const bool gives_less = most < witnesses_[1].gives();
+        const Testimony said = ask(who, input, truth.detail);
+        count(who, said);
+        judge(who, input, gives_less ? ask(1, input, said.detail) : truth, said);
+    }
 }
 
-Judges::Testimony Judges::driver_said(const NarrowphaseInput& input, const Contacts& contacts) {
-    Verdict& verdict = verdicts_.front();
+Judges::Testimony Judges::driver_said(const NarrowphaseInput& input, const Contacts& contacts) const {
     const std::chrono::duration<double> time = last_.end - last_.begin;
-    verdict.call_us.add(1e6 * time.count());
-    verdict.total_s += time.count();
-    verdict.failures += contacts.failures;
-    return {std::vector<std::uint8_t>(input.pairs.size(), 1),
-            {input.detail.begin(), input.detail.end()},
-            rows_of_pairs(input.pairs, contacts.rows),
-            {}};
+    Testimony said;
+    said.asked.assign(input.pairs.size(), 1);
+    said.detail.assign(input.detail.begin(), input.detail.end());
+    said.rows = rows_of_pairs(input.pairs, contacts.rows);
+    said.seconds = time.count();
+    said.failures = contacts.failures;
+    return said;
 }
 
-Judges::Testimony Judges::ask(std::size_t who, const NarrowphaseInput& input, std::span<const Detail> at_most) {
-    Witness& witness = witnesses_[who];
-    Verdict& verdict = verdicts_[who];
+Judges::Testimony Judges::ask(std::size_t who, const NarrowphaseInput& input, std::span<const Detail> at_most) const {
+    const Witness& witness = witnesses_[who];
     const std::size_t count = input.pairs.size();
-    Testimony said{std::vector<std::uint8_t>(count, 0), {at_most.begin(), at_most.end()}, {}, {}};
+    Testimony said;
+    said.asked.assign(count, 0);
     said.rows.resize(count);
     std::vector<Pair> pairs;
     std::vector<Detail> detail;
     for (std::size_t i = 0; i < count; ++i) {
-        said.detail[i] = std::min(at_most[i], witness.gives());
+        said.detail.push_back(std::min(at_most[i], witness.gives()));
         if (!witness.takes(input.world, input.pairs[i])) continue;
         said.asked[i] = 1;
         pairs.push_back(input.pairs[i]);
@@ -154,21 +169,33 @@ Judges::Testimony Judges::ask(std::size_t who, const NarrowphaseInput& input, st
     try {
         const auto start = Span::Clock::now();
         witness.stage().find_contacts({input.world, pairs, detail}, said.contacts);
-        const std::chrono::duration<double> time = Span::Clock::now() - start;
+        said.seconds = std::chrono::duration<double>(Span::Clock::now() - start).count();
+        said.failures = said.contacts.failures;
         const auto rows = rows_of_pairs(pairs, said.contacts.rows);
+        for (std::size_t i = 0; i < pairs.size(); ++i) require_sense(rows[i], detail[i]);
         for (std::size_t i = 0, next = 0; i < count; ++i)
             if (said.asked[i]) said.rows[i] = rows[next++];
-        verdict.call_us.add(1e6 * time.count());
-        verdict.total_s += time.count();
-        verdict.failures += said.contacts.failures;
     } catch (const std::exception& failure) {
-        if (verdict.failed_calls++ == 0)
-            verdict.first_failure = "step " + std::to_string(step_) + ": " + failure.what();
+        said.exception = failure.what();
         said.asked.assign(count, 0);
     }
-    if (verdict.role == Role::truth)
-        for (const std::uint8_t asked : said.asked) ++(asked ? verdict.asked : verdict.not_asked);
     return said;
+}
+
+void Judges::count(std::size_t who, const Testimony& said) {
+    Verdict& verdict = verdicts_[who];
+    const auto asked = static_cast<std::uint64_t>(std::count(said.asked.begin(), said.asked.end(), 1));
+    if (verdict.role == Role::truth) {  // of the others only pairs count that the truth was asked about
+        verdict.asked += asked;
+        verdict.not_asked += said.asked.size() - asked;
+    }
+    verdict.failures += said.failures;
+    if (asked > 0) {
+        verdict.call_us.add(1e6 * said.seconds);
+        verdict.total_s += said.seconds;
+    }
+    if (said.exception.empty()) return;
+    if (verdict.failed_calls++ == 0) verdict.first_failure = "step " + std::to_string(step_) + ": " + said.exception;
 }
 
 void Judges::judge(std::size_t who, const NarrowphaseInput& input, const Testimony& truth, const Testimony& said) {

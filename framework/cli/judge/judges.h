@@ -63,8 +63,9 @@ private:
     struct Testimony;
 
     void prepare(const World& world);
-    Testimony driver_said(const NarrowphaseInput& input, const Contacts& contacts);
-    Testimony ask(std::size_t who, const NarrowphaseInput& input, std::span<const Detail> at_most);
+    Testimony driver_said(const NarrowphaseInput& input, const Contacts& contacts) const;
+    Testimony ask(std::size_t who, const NarrowphaseInput& input, std::span<const Detail> at_most) const;
+    void count(std::size_t who, const Testimony& said);
     void judge(std::size_t who, const NarrowphaseInput& input, const Testimony& truth, const Testimony& said);
     void keep(std::size_t who, const NarrowphaseInput& input, const Pair& pair, bool said);
 

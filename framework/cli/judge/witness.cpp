@@ -40,12 +40,12 @@ TriangleHits Witness::intersect(const World& world, const Pair& pair, bool first
     return found;
 }
 
-std::optional<bool> Witness::surfaces_meet(const World& world, const Pair& pair) {
+std::optional<bool> Witness::surfaces_meet(const World& world, const Pair& pair) const {
     if (!looks_at_triangles()) return std::nullopt;
     return !intersect(world, pair, true).hits.empty();
 }
 
-std::vector<TriangleHit> Witness::meeting_triangles(const World& world, const Pair& pair) {
+std::vector<TriangleHit> Witness::meeting_triangles(const World& world, const Pair& pair) const {
     std::vector<TriangleHit> hits = intersect(world, pair, false).hits;
     std::sort(hits.begin(), hits.end(),
               [](const TriangleHit& x, const TriangleHit& y) { return std::tie(x.a, x.b) < std::tie(y.a, y.b); });

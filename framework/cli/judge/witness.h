@@ -4,6 +4,8 @@
 #include <kolize/mesh_narrowphase.h>
 #include <kolize/plugin_library.h>
 
+#include <optional>
+
 namespace kolize::cli {
 
 class Witness {
@@ -14,7 +16,7 @@ public:
     const std::string& name() const { return config_.plugin; }
     const StageConfig& config() const { return config_; }
     const LoadedPlugin& plugin() const { return *plugin_; }
-    Narrowphase& stage() { return *stage_; }
+    Narrowphase& stage() const { return *stage_; }
     Detail gives() const { return stage_->gives(); }
 
     // To be called before the first question, and again whenever the world's shapes change. Shapes that the plugin
@@ -24,9 +26,9 @@ public:
 
     // Whether any triangles of two meshes intersect; the world's shapes are those prepared for. Nothing where the
     // plugin does not look at triangles. Meshes need not be closed.
-    std::optional<bool> surfaces_meet(const World& world, const Pair& pair);
+    std::optional<bool> surfaces_meet(const World& world, const Pair& pair) const;
     // All triangles that do, in canonical order.
-    std::vector<TriangleHit> meeting_triangles(const World& world, const Pair& pair);
+    std::vector<TriangleHit> meeting_triangles(const World& world, const Pair& pair) const;
     bool looks_at_triangles() const;
 
 private:
