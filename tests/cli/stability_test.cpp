@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include <map>
+
 using namespace kolize::test;
 using namespace kolize::cli::stability;
 using nlohmann::json;
@@ -41,7 +43,7 @@ std::string with_liar(const Shell& shell, const std::string& stage) {
     const std::string file = "liar_" + stage + ".so";
     std::filesystem::copy_file(std::filesystem::path(KOLIZE_BAD_PLUGIN_DIR) / file,
                                shell.folder.path() / "liars" / file);
-    return "--plugin-path liars --stage " + stage + " --plugin liar";
+    return "--plugin-path liars --stage " + stage + " --set " + stage + ".plugin=liar";
 }
 
 }  // namespace
@@ -134,6 +136,48 @@ TEST_CASE("stability finds that triangle tests in float end before those in doub
     }
 }
 
+TEST_CASE("stability finds which law a response breaks", "[cli][stability]") {
+    const Shell shell;
+    const json result = survey(
+        shell, with_liar(shell, "response") + " --vary response.lie=none,gain,nan_velocity,throw" + " --axis contacts");
+    std::map<std::string, std::string> failures;
+    for (const json& row : result["rows"])
+        if (row["output"] == "energy") {
+            const std::string plugin = row["plugin"];
+            failures[plugin] = row["beyond"].is_null() ? "" : row["beyond"]["failure"].get<std::string>();
+        }
+    CHECK(failures["liar lie=none"] == "");
+    CHECK(failures["liar lie=gain"] == "wrong");
+    CHECK(failures["liar lie=nan_velocity"] == "not finite");
+    CHECK(failures["liar lie=throw"] == "refuses");
+}
+
+TEST_CASE("stability finds that energy is kept by pdmv4 and not by momentum_euler", "[cli][stability]") {
+    const Shell shell;
+    const json result = survey(shell, "--stage integrator --axis spin");
+    CHECK(limit(result, "pdmv4", "spin") == kolize::infinity);
+    CHECK(limit(result, "momentum_euler", "spin") == -kolize::infinity);
+}
+
+TEST_CASE("stability finds no impact missed by a plugin that times them", "[cli][stability]") {
+    const Shell shell;
+    const json result = survey(shell, "--stage continuous --plugin exact --axis speed --axis graze");
+    REQUIRE(result["rows"].size() == 3);
+    for (const json& row : result["rows"]) CHECK(row["holds_to_the_end"] == true);
+}
+
+TEST_CASE("A map of two axes has an outcome for every cell", "[cli][stability]") {
+    const Shell shell;
+    const json result = survey(shell, "--stage response --plugin impulse --map mass_ratio,contacts");
+    REQUIRE(result["maps"].size() == 3);
+    for (const json& map : result["maps"]) {
+        CHECK(map["cells"].size() == map["across"]["decades"].size() * map["up"]["decades"].size());
+        CHECK(map["across"]["axis"] == "mass_ratio");
+    }
+    const auto none = shell.kolize("stability --stage response --map mass_ratio,mass_ratio");
+    CHECK(none.code == 2);
+}
+
 TEST_CASE("stability finds a plugin that answers wrongly", "[cli][stability]") {
     const Shell shell;
     const std::string stage = GENERATE("broadphase", "narrowphase");
@@ -168,4 +212,7 @@ TEST_CASE("stability writes its report into a folder", "[cli][stability]") {
     REQUIRE(outcome.code == 0);
     for (const char* file : {"stability.txt", "stability.csv", "stability.json"})
         CHECK(std::filesystem::exists(shell.folder.path() / "out" / file));
+    const std::string page = file_bytes(shell.folder.path() / "out" / "stability.html");
+    CHECK(page.find("<td>sat</td>") != std::string::npos);
+    CHECK(page.find("http") == std::string::npos);  // it needs nothing else
 }

@@ -13,8 +13,6 @@ constexpr int steps = 3;
 
 enum { size_ratio, distance, motion, crowd };
 
-double magnitude(const Point& point, int axis) { return std::pow(10.0, point[static_cast<std::size_t>(axis)]); }
-
 // A quarter of the boxes stands still. Every second box begins where the one before it ends, in one axis, or a little
 // before or after: those are the pairs that rounding decides.
 struct Boxes {
@@ -39,7 +37,7 @@ Vec3 beside(const Aabb& box, const Vec3& size, Dice& dice) {
 Boxes make_boxes(const Point& point, Dice& dice) {
     Boxes boxes;
     const double decades = point[size_ratio];
-    const int in_crowd = static_cast<int>(std::lround(magnitude(point, crowd)));
+    const int in_crowd = static_cast<int>(std::lround(value(point, crowd)));
     const double side = 5 * std::pow(10, decades);
     for (int i = 0; i < 120; ++i) {
         const auto length = [&] { return std::pow(10, dice.between(0, decades)) * dice.between(0.5, 1); };
@@ -48,7 +46,7 @@ Boxes make_boxes(const Point& point, Dice& dice) {
         boxes.add(i % 2 ? beside(boxes.bounds.back(), size, dice) : dice.point(side), size);
     }
     for (int i = 0; i < in_crowd; ++i) boxes.add(-Vec3::Ones() - dice.point(0.5), 2 * Vec3::Ones() + dice.point(0.5));
-    const Vec3 shift = magnitude(point, distance) * dice.direction();
+    const Vec3 shift = value(point, distance) * dice.direction();
     for (Aabb& box : boxes.bounds) box = {box.min + shift, box.max + shift};
     return boxes;
 }
@@ -95,7 +93,7 @@ Outcome probe(const Context& context, const Subject& subject, const Point& point
             stage->find_pairs({boxes.bounds, boxes.is_static, 1}, pairs);
             const Outcome outcome = judge(boxes, std::move(pairs), subject.plugin->descriptor->capabilities.exact);
             if (!outcome.holds()) return outcome;
-            move(boxes, magnitude(point, motion), dice);
+            move(boxes, value(point, motion), dice);
         }
     }
     return {};

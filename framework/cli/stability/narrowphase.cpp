@@ -9,8 +9,6 @@
 namespace kolize::cli::stability {
 namespace {
 
-double magnitude(const Point& point, int axis) { return std::pow(10.0, point[static_cast<std::size_t>(axis)]); }
-
 // --- Triangles -----------------------------------------------------------------------------------------------------
 
 namespace triangles {
@@ -22,22 +20,22 @@ enum { aspect, offset, graze, distance, size_ratio };
 // A side of triangle b goes through triangle a's plane inside or outside of a's second side, as near to it as the graze
 // says; or b lies in a parallel plane.
 TrianglePair make(const Point& point, Dice& dice) {
-    const double thin = 1 / magnitude(point, aspect), off = magnitude(point, offset);
+    const double thin = 1 / value(point, aspect), off = value(point, offset);
     TrianglePair pair;
     pair.a[0] = {-1, -thin, 0};
     pair.a[1] = {1, -thin, 0};
     pair.a[2] = {dice.between(-1, 1), thin, 0};
     const double along = dice.between(0.2, 0.8);
-    const double into = (dice.below(2) ? 0.2 : -0.2) * magnitude(point, graze);
+    const double into = (dice.below(2) ? 0.2 : -0.2) * value(point, graze);
     const Vec3 aim = (1 - along) * pair.a[1] + along * pair.a[2] + into * (pair.a[0] - pair.a[1]);
-    const double size = 1 / magnitude(point, size_ratio);
+    const double size = 1 / value(point, size_ratio);
     pair.b[0] = aim + size * dice.point(2);
     pair.b[1] = 2 * aim - pair.b[0];
     pair.b[2] = pair.b[0] + size * dice.point(2);
     for (Vec3& p : pair.b) p.z() *= off;
     if (dice.below(4) == 0) pair.b[2].z() = pair.b[1].z() = pair.b[0].z();  // parallel planes
     const Mat3 turn = dice.below(2) ? Mat3(Mat3::Identity()) : dice.rotation().toRotationMatrix();
-    const Vec3 shift = magnitude(point, distance) * dice.direction();
+    const Vec3 shift = value(point, distance) * dice.direction();
     for (Vec3* triangle : {pair.a, pair.b})
         for (int k = 0; k < 3; ++k) triangle[k] = turn * triangle[k] + shift;
     return pair;
@@ -79,7 +77,10 @@ Study study(const Context& context, const std::vector<Subject>& subjects) {
         [context](const Subject& subject, const Point& point) { return probe(context, subject, point); }};
     for (const Subject& subject : subjects) {
         const auto stage = context.plugins.make<Narrowphase>(subject.config, context.host);
-        if (dynamic_cast<const TriangleNarrowphase*>(stage.get())) study.subjects.push_back(subject);
+        if (dynamic_cast<const TriangleNarrowphase*>(stage.get()))
+            study.subjects.push_back(subject);
+        else
+            study.left_out.push_back(subject.name + ": it tests no single triangles");
     }
     return study;
 }
@@ -110,12 +111,12 @@ Shape make_shape(const char* name, const Vec3& half_extents, bool as_mesh) {
 
 // The small box stands on the large one, turned about the vertical: sunk in by the depth, or as far above it.
 Case make(const Point& point, bool as_mesh, Dice& dice) {
-    const double ratio = magnitude(point, size_ratio), thin = 1 / magnitude(point, aspect);
+    const double ratio = value(point, size_ratio), thin = 1 / value(point, aspect);
     const Vec3 large(ratio, ratio, ratio), small(0.5, 0.5 * thin, 0.4);
-    const double wanted = magnitude(point, depth) * (dice.below(3) ? 1 : -1);
+    const double wanted = value(point, depth) * (dice.below(3) ? 1 : -1);
     const bool straight = dice.below(2);
     const Quat turn = straight ? Quat(Quat::Identity()) : dice.rotation();
-    const Vec3 origin = magnitude(point, distance) * dice.direction();
+    const Vec3 origin = value(point, distance) * dice.direction();
     const double x = 0.3 * ratio * dice.between(-1, 1), z = 0.3 * ratio * dice.between(-1, 1);
     Case made;
     made.size = 2 * ratio;
@@ -203,8 +204,14 @@ Study study(const Context& context, const std::vector<Subject>& subjects, Output
         }};
     for (const Subject& subject : subjects) {
         const Capabilities& can = subject.plugin->descriptor->capabilities;
-        const bool asked = !can.bounding_spheres && can.shape_kinds & bit(ShapeKind::box);
-        if (asked && (output == Output::overlap || can.gives != Detail::overlap)) study.subjects.push_back(subject);
+        if (can.bounding_spheres)
+            study.left_out.push_back(subject.name + ": it answers for bounding volumes, not for the bodies");
+        else if (!(can.shape_kinds & bit(ShapeKind::box)))
+            study.left_out.push_back(subject.name + ": it takes no boxes");
+        else if (output != Output::overlap && can.gives == Detail::overlap)
+            study.left_out.push_back(subject.name + ": it gives no more than that bodies overlap");
+        else
+            study.subjects.push_back(subject);
     }
     return study;
 }

@@ -46,8 +46,6 @@ Json to_json(const std::optional<double>& decades) { return decades ? Json(*deca
 
 }  // namespace
 
-std::string magnitude(double decades) { return number(std::pow(10.0, decades), 2); }
-
 std::string cell(const Envelope& envelope) {
     if (envelope.to_the_end()) return "all";
     const std::string limit = envelope.holds_to ? magnitude(*envelope.holds_to) : "none";
@@ -83,9 +81,10 @@ std::string text_report(const Survey& survey) {
         print_table(out, survey, study);
         for (const Row& row : survey.rows)
             if (of_study(row) && !row.envelope.to_the_end()) out << "  " << note(row) << "\n";
+        for (const Map& map : survey.maps)
+            if (map.study == &study) out << "\n" << text(map);
+        for (const std::string& who : study.left_out) out << "  Not asked: " << who << "\n";
     }
-    if (!survey.left_out.empty()) out << "\nNot asked\n";
-    for (const std::string& sentence : survey.left_out) out << "  " << sentence << "\n";
     return out.str();
 }
 
@@ -120,8 +119,11 @@ Json to_json(const Survey& survey) {
                             {"from_decades", axis.from},
                             {"to_decades", axis.to},
                             {"usual_decades", axis.usual}});
-        json["studies"].push_back(
-            {{"stage", study.stage}, {"output", study.output}, {"asks", study.asks}, {"axes", axes}});
+        json["studies"].push_back({{"stage", study.stage},
+                                   {"output", study.output},
+                                   {"asks", study.asks},
+                                   {"axes", axes},
+                                   {"left_out", study.left_out}});
     }
     for (const Row& row : survey.rows) {
         const Envelope& e = row.envelope;
@@ -136,7 +138,17 @@ Json to_json(const Survey& survey) {
                                 {"again_decades", to_json(e.again)},
                                 {"probes", e.probes}});
     }
-    json["left_out"] = survey.left_out;
+    if (!survey.maps.empty()) json["maps"] = Json::array();
+    for (const Map& map : survey.maps) {
+        Json cells = Json::array();
+        for (const Outcome& outcome : map.cells) cells.push_back(word(outcome.failure));
+        json["maps"].push_back({{"stage", map.study->stage},
+                                {"output", map.study->output},
+                                {"plugin", map.subject->name},
+                                {"across", {{"axis", map.across().name}, {"decades", map.columns}}},
+                                {"up", {{"axis", map.up().name}, {"decades", map.rows}}},
+                                {"cells", cells}});
+    }
     return json;
 }
 

@@ -1,6 +1,7 @@
-// What kolize stability found, as text, CSV and JSON.
+// What kolize stability found, as text, CSV, JSON and HTML.
 #pragma once
 
+#include "stability/map.h"
 #include "stability/search.h"
 
 namespace kolize::cli::stability {
@@ -17,12 +18,10 @@ struct Row {
 struct Survey {
     std::uint64_t seed = 1;
     std::vector<Study> studies;
-    std::vector<Row> rows;                   // by study, then subject, then axis
-    std::vector<std::string> left_out = {};  // who was not asked what, and why, in sentences
+    std::vector<Row> rows;  // by study, then subject, then axis
+    std::vector<Map> maps;  // by study, then subject
 };
 
-// "2e+07", a magnitude in the axis's unit.
-std::string magnitude(double decades);
 // "2e+07 missed": the last magnitude that holds and what happens then; "all": to the end; "none wrong": nowhere.
 std::string cell(const Envelope& envelope);
 // The silent failures, the lower magnitudes that fail and what the plugin did, a sentence a row; "" if it holds.
@@ -31,5 +30,7 @@ std::string note(const Row& row);
 std::string text_report(const Survey& survey);
 std::string csv_report(const Survey& survey);
 Json to_json(const Survey& survey);
+// A page that needs no other file and no network.
+std::string html_report(const Survey& survey);
 
 }  // namespace kolize::cli::stability

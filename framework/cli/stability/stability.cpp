@@ -3,6 +3,8 @@
 
 #include "bench.h"
 
+#include <kolize/integrator.h>
+
 #include <nlohmann/json.hpp>
 
 #include <CLI/CLI.hpp>
@@ -18,10 +20,21 @@ using namespace stability;
 struct StabilityOptions {
     std::vector<std::string> stages, names, axes, set, vary, plugin_path;
     std::uint64_t seed = 1;
-    std::string report, json;
+    std::string map, report, json;
+
+    // Without a choice of --axis, a map is about its own two.
+    std::vector<std::string> followed() const { return axes.empty() ? map_axes() : axes; }
+    std::vector<std::string> map_axes() const {
+        if (map.empty()) return {};
+        const std::size_t comma = map.find(',');
+        if (comma == std::string::npos || map.find(',', comma + 1) != std::string::npos ||
+            map.substr(0, comma) == map.substr(comma + 1))
+            throw Error("--map takes two different axes, AXIS1,AXIS2, not '" + map + "'");
+        return {map.substr(0, comma), map.substr(comma + 1)};
+    }
 };
 
-constexpr const char* stage_words[] = {"broadphase", "narrowphase"};
+constexpr const char* stage_words[] = {"broadphase", "narrowphase", "continuous", "response", "integrator"};
 
 bool wanted(const std::vector<std::string>& choice, const std::string& name) {
     return choice.empty() || std::find(choice.begin(), choice.end(), name) != choice.end();
@@ -47,12 +60,11 @@ std::vector<Subject> plan_subjects(const StabilityOptions& options, StageKind st
     std::vector<Subject> subjects;
     if (library.names(stage).empty()) return subjects;
     if (!names_plugin(bench, stage)) {
-        Variation names{std::string(to_string(stage)) + ".plugin", {}};
         std::string joined;
         for (const std::string& name : library.names(stage))
             if (wanted(options.names, name)) joined += (joined.empty() ? "" : ",") + name;
         if (joined.empty()) return subjects;
-        bench.vary.insert(bench.vary.begin(), names.key + "=" + joined);
+        bench.vary.insert(bench.vary.begin(), std::string(to_string(stage)) + ".plugin=" + joined);
     }
     for (const PlannedVariant& variant : plan_variants(bench, stage, "", library))
         subjects.push_back({short_name(variant), variant.config, variant.plugin});
@@ -66,7 +78,14 @@ std::vector<Study> plan_studies(const StabilityOptions& options, const Context& 
             if (wanted(options.stages, study.stage) && !study.subjects.empty()) studies.push_back(std::move(study));
     };
     add(broadphase_studies(context, plan_subjects(options, StageKind::broadphase, context.plugins)));
-    add(narrowphase_studies(context, plan_subjects(options, StageKind::narrowphase, context.plugins)));
+    const std::vector<Subject> narrowphases = plan_subjects(options, StageKind::narrowphase, context.plugins);
+    add(narrowphase_studies(context, narrowphases));
+    add(continuous_studies(context, narrowphases));
+    add(response_studies(context, plan_subjects(options, StageKind::response, context.plugins)));
+    std::vector<Subject> integrators;
+    for (const std::string& name : integrator_names())
+        if (wanted(options.names, name)) integrators.push_back({name});
+    add(integrator_studies(context, integrators));
     return studies;
 }
 
@@ -74,7 +93,9 @@ void require_known(const StabilityOptions& options, const Survey& survey) {
     std::vector<std::string> axes;
     for (const Study& study : survey.studies)
         for (const Axis& axis : study.axes) axes.push_back(axis.name);
-    for (const std::string& name : options.axes)
+    std::vector<std::string> names = options.axes, of_map = options.map_axes();
+    names.insert(names.end(), of_map.begin(), of_map.end());
+    for (const std::string& name : names)
         if (std::find(axes.begin(), axes.end(), name) == axes.end()) {
             const std::string nearest = nearest_name(name, axes);
             throw Error("there is no axis '" + name + "' to follow" +
@@ -89,16 +110,35 @@ void require_known(const StabilityOptions& options, const Survey& survey) {
             throw Error("nothing that could be asked is called '" + name + "' (see kolize plugins list)");
 }
 
-void measure(Survey& survey, const StabilityOptions& options) {
+void measure(Survey& survey, const std::vector<std::string>& axes) {
     for (const Study& study : survey.studies)
         for (const Subject& subject : study.subjects)
             for (std::size_t axis = 0; axis < study.axes.size(); ++axis)
-                if (wanted(options.axes, study.axes[axis].name)) survey.rows.push_back({&study, &subject, axis, {}});
+                if (wanted(axes, study.axes[axis].name)) survey.rows.push_back({&study, &subject, axis, {}});
     Progress progress("stability", survey.rows.size());
     for (Row& row : survey.rows) {
         row.envelope = find_envelope(*row.study, *row.subject, row.axis_index);
         progress.advance();
     }
+}
+
+void make_maps(Survey& survey, const std::vector<std::string>& axes) {
+    if (axes.empty()) return;
+    std::uint64_t count = 0;
+    const auto for_each = [&](auto&& action) {
+        for (const Study& study : survey.studies) {
+            const auto across = axis_index(study, axes[0]), up = axis_index(study, axes[1]);
+            if (!across || !up) continue;
+            for (const Subject& subject : study.subjects) action(study, subject, *across, *up);
+        }
+    };
+    for_each([&](const Study&, const Subject&, std::size_t, std::size_t) { ++count; });
+    if (count == 0) throw Error("nothing that is asked has both axes, '" + axes[0] + "' and '" + axes[1] + "'");
+    Progress progress("maps", count);
+    for_each([&](const Study& study, const Subject& subject, std::size_t across, std::size_t up) {
+        survey.maps.push_back(make_map(study, subject, across, up));
+        progress.advance();
+    });
 }
 
 void write_report(const std::filesystem::path& folder, const Survey& survey) {
@@ -108,14 +148,16 @@ void write_report(const std::filesystem::path& folder, const Survey& survey) {
     write_text(text_report(survey), folder / "stability.txt");
     write_text(csv_report(survey), folder / "stability.csv");
     write_json(to_json(survey), folder / "stability.json");
+    write_text(html_report(survey), folder / "stability.html");
 }
 
 void run(const StabilityOptions& options) {
     const PluginLibrary plugins = open_plugins(options.plugin_path, {});
     const std::unique_ptr<Host> host = make_host(1);
-    Survey survey{options.seed, plan_studies(options, {plugins, *host, options.seed}), {}};
+    Survey survey{options.seed, plan_studies(options, {plugins, *host, options.seed}), {}, {}};
     require_known(options, survey);
-    measure(survey, options);
+    measure(survey, options.followed());
+    make_maps(survey, options.map_axes());
     if (options.json != "-") std::cout << text_report(survey);
     if (!options.json.empty()) write_json(to_json(survey), options.json);
     if (!options.report.empty()) write_report(options.report, survey);
@@ -132,11 +174,12 @@ void add_stability(CLI::App& app) {
         ->check(CLI::IsMember(std::vector<std::string>(std::begin(stage_words), std::end(stage_words))));
     command->add_option("--plugin", options->names, "Only these (repeatable)")->allow_extra_args(false);
     command->add_option("--axis", options->axes, "Follow only these axes (repeatable)")->allow_extra_args(false);
+    command->add_option("--map", options->map, "Two axes at once (AXIS1,AXIS2): what holds where");
     command->add_option("--vary", options->vary, "STAGE.KEY=V1,V2,...: all combinations are asked (repeatable)")
         ->allow_extra_args(false);
     add_set_option(*command, options->set);
     command->add_option("--seed", options->seed, "Of all random input")->capture_default_str();
-    command->add_option("--report", options->report, "Write stability.txt, .csv and .json to this folder");
+    command->add_option("--report", options->report, "Write stability.txt, .csv, .json and .html to this folder");
     add_plugin_path_option(*command, options->plugin_path);
     add_json_option(*command, options->json);
     command->footer(

@@ -18,6 +18,8 @@ const char* word(Failure failure) {
     return "";
 }
 
+std::string magnitude(double decades) { return number(std::pow(10.0, decades), 2); }
+
 Point Study::usual() const {
     Point point;
     for (const Axis& axis : axes) point.push_back(axis.usual);
@@ -27,6 +29,8 @@ Point Study::usual() const {
 Outcome ask(const Study& study, const Subject& subject, const Point& point) {
     try {
         return study.probe(subject, point);
+    } catch (const Hang& hang) {
+        return {Failure::hang, hang.what()};
     } catch (const std::bad_alloc&) {
         return {Failure::hang, "it runs out of memory"};
     } catch (const std::exception& error) {

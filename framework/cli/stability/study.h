@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <random>
+#include <stdexcept>
 
 namespace kolize::cli::stability {
 
@@ -47,6 +48,11 @@ struct Axis {
 
 using Point = std::vector<double>;  // one magnitude an axis, decades
 
+// "2e+07", in the axis's unit.
+std::string magnitude(double decades);
+
+inline double value(const Point& point, int axis) { return std::pow(10.0, point[static_cast<std::size_t>(axis)]); }
+
 struct Subject {
     std::string name;
     StageConfig config = {};               // of a plugin
@@ -60,11 +66,17 @@ struct Study {
     std::vector<Axis> axes;
     std::vector<Subject> subjects;
     std::function<Outcome(const Subject& subject, const Point& point)> probe;
+    std::vector<std::string> left_out = {};  // who is not asked, and why: "explode: it moves nothing"
 
     Point usual() const;
 };
 
-// The probe; an exception is a refusal with its message. At the same point always the same outcome.
+// Thrown by a probe that has counted more work than the question can need.
+struct Hang : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+// The probe; any other exception is a refusal with its message. At the same point always the same outcome.
 Outcome ask(const Study& study, const Subject& subject, const Point& point);
 
 struct Context {
@@ -76,6 +88,9 @@ struct Context {
 // The studies of one stage, for those of the subjects that can be asked.
 std::vector<Study> broadphase_studies(const Context& context, const std::vector<Subject>& subjects);
 std::vector<Study> narrowphase_studies(const Context& context, const std::vector<Subject>& subjects);
+std::vector<Study> continuous_studies(const Context& context, const std::vector<Subject>& narrowphases);
+std::vector<Study> response_studies(const Context& context, const std::vector<Subject>& subjects);
+std::vector<Study> integrator_studies(const Context& context, const std::vector<Subject>& subjects);
 
 // The same numbers with every standard library.
 class Dice {
