@@ -32,6 +32,7 @@ void add_explain(CLI::App& app, int& exit_code);
 void add_massprops(CLI::App& app);
 void add_plugins(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
+void add_stability(CLI::App& app);
 void add_view(CLI::App& app, int& exit_code);
 
 // --- Plugins -------------------------------------------------------------------------------------------------------

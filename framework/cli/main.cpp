@@ -51,6 +51,7 @@ int main(int argc, char** argv) {
     kolize::cli::add_explain(app, exit_code);
     kolize::cli::add_bench(app, exit_code);
     kolize::cli::add_check(app, exit_code);
+    kolize::cli::add_stability(app);
     kolize::cli::add_massprops(app);
     kolize::cli::add_plugins(app, exit_code);
     return parse_and_run(app, argc, argv, exit_code);
