@@ -151,7 +151,7 @@ std::string front_chart(const Rows& rows) {
             << "\" y2=\"" << py << "\" stroke=\"" << colour(i) << "\"/><circle cx=\"" << px << "\" cy=\"" << py
             << "\" r=\"" << (v.safe_front ? 6 : 4) << "\" fill=\"" << (v.front || v.safe_front ? colour(i) : "none")
             << "\" stroke=\"" << colour(i) << "\" stroke-width=\"2\"><title>" << escaped(v.label) << "</title></circle>"
-            << text(px + 8, py - 6 - 11 * double(i % 3), std::to_string(i + 1));
+            << text(px + 8, std::max(py - 6 - 11 * double(i % 3), top + 10), std::to_string(i + 1));
     }
     return chart(372, "Time against accuracy", out.str());
 }
