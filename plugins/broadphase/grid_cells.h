@@ -301,13 +301,18 @@ private:
     }
 
     void count_sizes(std::span<const Aabb> bounds, std::span<const std::uint32_t> rows) {
-        classes_.fill({});
+        for (std::size_t i = first_class_; i <= last_class_; ++i) classes_[i] = {};
+        first_class_ = classes_.size() - 1;
+        last_class_ = 0;
         corners_ = {};
         bool valid = true;
         for (const std::uint32_t row : rows) {
             valid &= is_valid(bounds[row]);
             const double size = size_of(bounds[row]);
-            SizeClass& c = classes_[class_index(size)];
+            const std::size_t index = class_index(size);
+            first_class_ = std::min(first_class_, index);
+            last_class_ = std::max(last_class_, index);
+            SizeClass& c = classes_[index];
             c.longest = std::max(c.longest, size);
             ++c.count;
             corners_.include(bounds[row].min);
@@ -318,8 +323,8 @@ private:
     void choose_levels() {
         levels_.clear();
         std::uint32_t left = 0;
-        for (const SizeClass& c : classes_) left += c.count;
-        for (std::size_t i = classes_.size(); i-- > 0;) {
+        for (std::size_t i = first_class_; i <= last_class_; ++i) left += classes_[i].count;
+        for (std::size_t i = last_class_ + 1; i-- > first_class_;) {
             SizeClass& c = classes_[i];
             if (c.count > 0 && (levels_.empty() || needs_level(c, left))) levels_.push_back({.longest = c.longest});
             c.level = levels_.empty() ? 0 : static_cast<std::uint32_t>(levels_.size() - 1);
@@ -583,6 +588,7 @@ private:
     double units_per_size_ = 0;  // of the finest level
     bool crowded_ = false;       // cells larger than boxes need are not to be tried
     std::array<SizeClass, 2048> classes_;
+    std::size_t first_class_ = 0, last_class_ = classes_.size() - 1;  // in use: outside of them all is empty
     std::vector<Level> levels_;
     std::vector<std::uint32_t> slots_;
     std::vector<Item> items_, unsorted_;

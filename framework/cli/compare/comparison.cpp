@@ -278,11 +278,16 @@ void draw_conclusions(std::vector<Variant>& variants, std::size_t baseline, cons
     for (Variant& variant : variants) {
         variant.front = on_front(variants, variant, ranked);
         variant.safe_front = on_front(variants, variant, safe);
-        if (!ranked(variant) || variant.front) continue;
+    }
+    for (Variant& variant : variants) {
+        if (!ranked(variant) || variant.front || variant.safe_front) continue;
+        // By one that is not beaten itself, where there is one: with noise, beating is not quite transitive.
+        const Variant* by = nullptr;
         for (const Variant& other : variants)
             if (ranked(other) && (is_safe(other) || !is_safe(variant)) && beats(other, variant) &&
-                variant.dominated_by.empty())
-                variant.dominated_by = other.label;
+                (!by || (other.safe_front && !by->safe_front)))
+                by = &other;
+        if (by) variant.dominated_by = by->label;
     }
 }
 
