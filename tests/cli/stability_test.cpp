@@ -111,7 +111,7 @@ TEST_CASE("What a probe throws is a refusal with its message", "[stability]") {
         "asks",  {six_decades},
         {},      [](const Subject&, const Point&) -> Answer {
                           throw std::invalid_argument("body 3 is too far away"); }};
-    const auto outcome = ask(study, {"plugin"}, study.usual());
+    const auto outcome = ask(study, Subject("plugin"), study.usual());
     CHECK(outcome.failure == Failure::refused);
     CHECK(outcome.sentence == "body 3 is too far away");
 }
@@ -164,6 +164,26 @@ TEST_CASE("stability finds no impact missed by a plugin that times them", "[cli]
     const json result = survey(shell, "--stage continuous --plugin exact --axis speed --axis graze");
     REQUIRE(result["rows"].size() == 3);
     for (const json& row : result["rows"]) CHECK(row["holds_to_the_end"] == true);
+}
+
+TEST_CASE("stability finds that discrete stepping lets fast bodies escape before continuous stepping fails",
+          "[cli][stability]") {
+    const Shell shell;
+    const json result = survey(shell, "--stage pipeline --plugin discrete --plugin continuous --axis speed");
+    CHECK(limit(result, "discrete", "speed") < limit(result, "continuous", "speed"));
+    CHECK(result["rows"][0]["beyond"]["failure"] == "escaped");
+}
+
+TEST_CASE("stability asks whole pipelines, and refuses one that cannot be read", "[cli][stability]") {
+    const Shell shell;
+    shell.folder.write("fine.toml", "[step]\nmode = \"continuous\"\n");
+    shell.folder.write("broken.toml", "[step]\nmoode = \"continuous\"\n");
+    const json result = survey(shell, "--stage pipeline --pipeline fine.toml --axis distance");
+    REQUIRE(result["rows"].size() == 1);
+    CHECK(result["rows"][0]["plugin"] == "fine.toml");
+    const auto broken = shell.kolize("stability --stage pipeline --pipeline broken.toml");
+    CHECK(broken.code == 2);
+    CHECK(broken.err.find("moode") != std::string::npos);
 }
 
 TEST_CASE("A map of two axes has an outcome for every cell", "[cli][stability]") {

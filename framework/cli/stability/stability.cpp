@@ -18,7 +18,7 @@ namespace {
 using namespace stability;
 
 struct StabilityOptions {
-    std::vector<std::string> stages, names, axes, set, vary, plugin_path;
+    std::vector<std::string> stages, names, axes, pipelines, set, vary, plugin_path;
     std::uint64_t seed = 1;
     std::string map, report, json;
 
@@ -34,7 +34,7 @@ struct StabilityOptions {
     }
 };
 
-constexpr const char* stage_words[] = {"broadphase", "narrowphase", "continuous", "response", "integrator"};
+constexpr const char* stage_words[] = {"broadphase", "narrowphase", "continuous", "response", "integrator", "pipeline"};
 
 bool wanted(const std::vector<std::string>& choice, const std::string& name) {
     return choice.empty() || std::find(choice.begin(), choice.end(), name) != choice.end();
@@ -67,7 +67,17 @@ std::vector<Subject> plan_subjects(const StabilityOptions& options, StageKind st
         bench.vary.insert(bench.vary.begin(), std::string(to_string(stage)) + ".plugin=" + joined);
     }
     for (const PlannedVariant& variant : plan_variants(bench, stage, "", library))
-        subjects.push_back({short_name(variant), variant.config, variant.plugin});
+        subjects.emplace_back(short_name(variant), variant.config, variant.plugin);
+    return subjects;
+}
+
+// Without a choice of files one for each stepping.
+std::vector<Subject> plan_pipelines(const StabilityOptions& options) {
+    std::vector<Subject> subjects;
+    for (const std::string& file : options.pipelines) subjects.emplace_back(file).pipeline = file;
+    if (subjects.empty())
+        for (const std::string& name : stepping_names())
+            if (wanted(options.names, name)) subjects.emplace_back(name);
     return subjects;
 }
 
@@ -84,8 +94,9 @@ std::vector<Study> plan_studies(const StabilityOptions& options, const Context& 
     add(response_studies(context, plan_subjects(options, StageKind::response, context.plugins)));
     std::vector<Subject> integrators;
     for (const std::string& name : integrator_names())
-        if (wanted(options.names, name)) integrators.push_back({name});
+        if (wanted(options.names, name)) integrators.emplace_back(name);
     add(integrator_studies(context, integrators));
+    if (wanted(options.stages, "pipeline")) add(pipeline_studies(context, plan_pipelines(options)));
     return studies;
 }
 
@@ -173,6 +184,8 @@ void add_stability(CLI::App& app) {
         ->allow_extra_args(false)
         ->check(CLI::IsMember(std::vector<std::string>(std::begin(stage_words), std::end(stage_words))));
     command->add_option("--plugin", options->names, "Only these (repeatable)")->allow_extra_args(false);
+    command->add_option("--pipeline", options->pipelines, "Pipeline file that is asked as a whole (repeatable)")
+        ->allow_extra_args(false);
     command->add_option("--axis", options->axes, "Follow only these axes (repeatable)")->allow_extra_args(false);
     command->add_option("--map", options->map, "Two axes at once (AXIS1,AXIS2): what holds where");
     command->add_option("--vary", options->vary, "STAGE.KEY=V1,V2,...: all combinations are asked (repeatable)")

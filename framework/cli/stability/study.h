@@ -54,9 +54,13 @@ std::string magnitude(double decades);
 inline double value(const Point& point, int axis) { return std::pow(10.0, point[static_cast<std::size_t>(axis)]); }
 
 struct Subject {
+    explicit Subject(std::string subject_name, StageConfig plugin_config = {}, const LoadedPlugin* loaded = nullptr)
+        : name(std::move(subject_name)), config(std::move(plugin_config)), plugin(loaded) {}
+
     std::string name;
-    StageConfig config = {};               // of a plugin
-    const LoadedPlugin* plugin = nullptr;  // null for integrators and pipelines
+    StageConfig config;          // of a plugin
+    const LoadedPlugin* plugin;  // null for integrators and pipelines
+    std::string pipeline = {};   // file; "": the stepping of that name with the default plugins
 };
 
 struct Study {
@@ -91,6 +95,7 @@ std::vector<Study> narrowphase_studies(const Context& context, const std::vector
 std::vector<Study> continuous_studies(const Context& context, const std::vector<Subject>& narrowphases);
 std::vector<Study> response_studies(const Context& context, const std::vector<Subject>& subjects);
 std::vector<Study> integrator_studies(const Context& context, const std::vector<Subject>& subjects);
+std::vector<Study> pipeline_studies(const Context& context, const std::vector<Subject>& subjects);
 
 // The same numbers with every standard library.
 class Dice {
