@@ -224,6 +224,9 @@ TEST_CASE("stability refuses what it cannot ask in one sentence", "[cli][stabili
     const auto plugin = shell.kolize("stability --plugin nobody");
     CHECK(plugin.code == 2);
     CHECK(plugin.err.find("'nobody'") != std::string::npos);
+    const auto setting = shell.kolize("stability --set narowphase.plugin=exact");
+    CHECK(setting.code == 2);
+    CHECK(setting.err.find("'narowphase.plugin=exact'") != std::string::npos);
 }
 
 TEST_CASE("stability writes its report into a folder", "[cli][stability]") {

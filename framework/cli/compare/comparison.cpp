@@ -175,7 +175,7 @@ bool is_safe(const Variant& variant) {
 }
 
 bool beats(const Variant& winner, const Variant& loser) {
-    const double fast = winner.summary.step.median_us, slow = loser.summary.step.median_us;
+    const double fast = winner.cost_ms(), slow = loser.cost_ms();
     const auto drift = [](const Variant& v) { return std::max(v.summary.energy_drift, drift_floor); };
     return (fast < slow * (1 - time_noise) && drift(winner) <= drift(loser)) ||
            (fast <= slow && drift(winner) < drift(loser));
@@ -186,6 +186,12 @@ bool on_front(const std::vector<Variant>& variants, const Variant& variant, Take
     return takes_part(variant) && std::none_of(variants.begin(), variants.end(), [&](const Variant& other) {
                return takes_part(other) && beats(other, variant);
            });
+}
+
+std::vector<double> costs(const Variant& variant) {
+    std::vector<double> all = variant.step_us();
+    for (double& time : all) time /= variant.scene.pipeline.step.dt;
+    return all;
 }
 
 std::vector<std::string> broken_gates(const Variant& variant, const Gates& gates) {
@@ -266,7 +272,7 @@ void draw_conclusions(std::vector<Variant>& variants, std::size_t baseline, cons
     const Variant& base = variants[baseline];
     for (Variant& variant : variants) {
         variant.ranked = variant.question == base.question;
-        variant.ratio = paired_ratio(variant.step_us(), base.step_us());
+        variant.ratio = paired_ratio(costs(variant), costs(base));
         variant.verdict = &variant == &base     ? "baseline"
                           : !variant.ranked     ? "not ranked: another question"
                           : !variant.repeatable ? "not ranked: results differ from run to run"

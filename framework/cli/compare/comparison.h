@@ -37,7 +37,9 @@ struct Variant {
 
     std::vector<double> step_us() const;  // median step of each run
     Estimate step;                        // their median, us
-    Estimate ratio;                       // to the baseline's, round by round
+    // ms of work for a second of simulated time, by the median step: what rows are ranked by, whatever their dt.
+    double cost_ms() const { return 1e-3 * step.value / scene.pipeline.step.dt; }
+    Estimate ratio;  // of costs, to the baseline's, round by round
     std::string verdict;
     bool ranked = true;               // answers the same question as the baseline
     bool front = false;               // of all that are ranked

@@ -33,15 +33,15 @@ std::string missed_text(const Variant& v) { return v.judged ? std::to_string(v.j
 std::string false_text(const Variant& v) { return v.judged ? std::to_string(v.judged->false_hits.count) : "-"; }
 
 void print_table(const Comparison& comparison, std::ostream& out) {
-    Table table({"pipeline", "", "step us (95 %)", "p95 us", "broad us", "narrow us", "resp us", "pairs", "contacts",
-                 "energy drift", "mom. drift", "deepest m", "missed", "false", "escaped", "stuck", "hash"});
+    Table table({"pipeline", "", "step us (95 %)", "p95 us", "ms/s", "broad us", "narrow us", "resp us", "pairs",
+                 "contacts", "energy drift", "mom. drift", "deepest m", "missed", "false", "escaped", "stuck", "hash"});
     for (const Variant& v : comparison.variants) {
         const RunResult& r = v.summary;
-        table.add({v.label, front_mark(v), estimate_text(v.step), number(r.step.p95_us), number(r.broadphase.median_us),
-                   number(r.narrowphase.median_us), number(r.response.median_us), std::to_string(r.pairs),
-                   std::to_string(r.contacts), number(r.energy_drift), number(r.momentum_drift),
-                   number(r.max_penetration_m), missed_text(v), false_text(v), std::to_string(r.escaped),
-                   std::to_string(r.stuck), v.repeatable ? hex(r.state_hash) : "DIFFERS"});
+        table.add({v.label, front_mark(v), estimate_text(v.step), number(r.step.p95_us), number(v.cost_ms()),
+                   number(r.broadphase.median_us), number(r.narrowphase.median_us), number(r.response.median_us),
+                   std::to_string(r.pairs), std::to_string(r.contacts), number(r.energy_drift),
+                   number(r.momentum_drift), number(r.max_penetration_m), missed_text(v), false_text(v),
+                   std::to_string(r.escaped), std::to_string(r.stuck), v.repeatable ? hex(r.state_hash) : "DIFFERS"});
     }
     table.print(out);
 }
@@ -83,7 +83,8 @@ void print_verdicts(const Comparison& comparison, std::ostream& out) {
 
 void print_notes(const Comparison& comparison, std::ostream& out) {
     out << "\n* no other row is both faster (by more than " << 100 * time_noise
-        << " % of a median step) and at least as accurate, or as fast and more accurate\n  (energy drift, equal below "
+        << " % of its cost, ms of work for a second of simulated time) and at least as accurate, or as fast and more "
+           "accurate\n  (energy drift, equal below "
         << drift_floor << "), of those in which nothing escaped, stuck or was missed; o: of all.\n"
         << "Intervals hold the true median with 95 % confidence: by bootstrap for times, by order statistics of the "
            "ratios "
@@ -161,6 +162,7 @@ Json variant_json(const Variant& v) {
     json["ranked"] = v.ranked;
     json["question"] = hex(v.question);
     json["step_us"] = estimate_json(v.step);
+    json["cost_ms_per_s"] = v.cost_ms();
     json["step_us_of_runs"] = v.step_us();
     json["ratio"] = estimate_json(v.ratio);
     json["verdict"] = v.verdict;

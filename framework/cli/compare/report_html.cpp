@@ -127,30 +127,31 @@ std::string front_chart(const Rows& rows) {
     constexpr double top = 28, bottom = 330;
     double fast = infinity, slow = 0, good = infinity, bad = 0;
     for (const Variant* v : rows) {
-        fast = std::min(fast, v->step.value), slow = std::max(slow, v->step.value);
+        fast = std::min(fast, v->cost_ms()), slow = std::max(slow, v->cost_ms());
         good = std::min(good, error_of(*v)), bad = std::max(bad, std::isfinite(error_of(*v)) ? error_of(*v) : 1);
     }
-    const Axis x(std::max(fast, 1e-3), slow, left, right, true), y(good, bad, bottom, top, true);
+    const Axis x(std::max(fast, 1e-6), slow, left, right, true), y(good, bad, bottom, top, true);
     std::ostringstream out;
-    out << frame(x, y, top, bottom, "median step, \u00b5s", "energy drift");
+    out << frame(x, y, top, bottom, "ms of work for a second of simulated time", "energy drift");
     for (const bool safe : {false, true}) {
         Rows front;
         for (const Variant* v : rows)
             if (safe ? v->safe_front : v->front) front.push_back(v);
-        std::sort(front.begin(), front.end(), [](auto a, auto b) { return a->step.value < b->step.value; });
+        std::sort(front.begin(), front.end(), [](auto a, auto b) { return a->cost_ms() < b->cost_ms(); });
         if (front.size() < 2) continue;
         out << "<polyline fill=\"none\" stroke=\"" << (safe ? "#009e73" : "#999") << "\" stroke-width=\""
             << (safe ? 2 : 1) << "\" points=\"";
-        for (const Variant* v : front) out << x.at(v->step.value) << ',' << y.at(error_of(*v)) << ' ';
+        for (const Variant* v : front) out << x.at(v->cost_ms()) << ',' << y.at(error_of(*v)) << ' ';
         out << "\"/>";
     }
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const Variant& v = *rows[i];
-        const double px = x.at(v.step.value), py = y.at(error_of(v));
-        out << "<line x1=\"" << x.at(std::max(v.step.low, 1e-3)) << "\" x2=\"" << x.at(v.step.high) << "\" y1=\"" << py
-            << "\" y2=\"" << py << "\" stroke=\"" << colour(i) << "\"/><circle cx=\"" << px << "\" cy=\"" << py
-            << "\" r=\"" << (v.safe_front ? 6 : 4) << "\" fill=\"" << (v.front || v.safe_front ? colour(i) : "none")
-            << "\" stroke=\"" << colour(i) << "\" stroke-width=\"2\"><title>" << escaped(v.label) << "</title></circle>"
+        const double px = x.at(v.cost_ms()), per_us = v.cost_ms() / v.step.value, py = y.at(error_of(v));
+        out << "<line x1=\"" << x.at(std::max(per_us * v.step.low, 1e-6)) << "\" x2=\"" << x.at(per_us * v.step.high)
+            << "\" y1=\"" << py << "\" y2=\"" << py << "\" stroke=\"" << colour(i) << "\"/><circle cx=\"" << px
+            << "\" cy=\"" << py << "\" r=\"" << (v.safe_front ? 6 : 4) << "\" fill=\""
+            << (v.front || v.safe_front ? colour(i) : "none") << "\" stroke=\"" << colour(i)
+            << "\" stroke-width=\"2\"><title>" << escaped(v.label) << "</title></circle>"
             << text(px + 8, std::max(py - 6 - 11 * double(i % 3), top + 10), std::to_string(i + 1));
     }
     return chart(372, "Time against accuracy", out.str());
@@ -244,6 +245,7 @@ std::string table(const Comparison& comparison) {
         cell(v.safe_front ? "safe" : v.front ? "all" : "");
         cell(number(v.step.value) + " (" + number(v.step.low) + " to " + number(v.step.high) + ")");
         cell(number(r.step.p95_us));
+        cell(number(v.cost_ms()));
         std::string words = v.verdict;
         for (const std::string& broken : v.breaks) words += "; gate: " + broken;
         cell(words, true);

@@ -100,6 +100,13 @@ std::vector<Study> plan_studies(const StabilityOptions& options, const Context& 
     return studies;
 }
 
+void require_stages(const std::vector<std::string>& settings) {
+    for (const std::string& setting : settings)
+        if (!concerns(setting, StageKind::broadphase) && !concerns(setting, StageKind::narrowphase) &&
+            !concerns(setting, StageKind::response))
+            throw Error("'" + setting + "' has to begin with broadphase., narrowphase. or response.");
+}
+
 void require_known(const StabilityOptions& options, const Survey& survey) {
     std::vector<std::string> axes;
     for (const Study& study : survey.studies)
@@ -163,6 +170,8 @@ void write_report(const std::filesystem::path& folder, const Survey& survey) {
 }
 
 void run(const StabilityOptions& options) {
+    require_stages(options.set);
+    require_stages(options.vary);
     const PluginLibrary plugins = open_plugins(options.plugin_path, {});
     const std::unique_ptr<Host> host = make_host(1);
     Survey survey{options.seed, plan_studies(options, {plugins, *host, options.seed}), {}, {}};
