@@ -142,3 +142,32 @@ TEST_CASE("labels cannot break out of the report", "[cli][compare]") {
     CHECK(html.find("<b>scene") == std::string::npos);
     CHECK(html.find("&lt;b&gt;scene&amp;.toml") != std::string::npos);
 }
+
+TEST_CASE("compare takes several scenes: each has a baseline of its own, and none is ranked against another",
+          "[cli][compare]") {
+    const Shell shell;
+    const auto balls = [](int count) {
+        std::string text = "[step]\ndt = 0.01\n[[shape]]\nname = \"ball\"\nkind = \"sphere\"\nradius = 0.5\n";
+        for (int i = 0; i < count; ++i)
+            text += "[[body]]\nshape = \"ball\"\nmass = 1\nposition = [" + std::to_string(2 * i) + ", 0, 0]\n";
+        return text;
+    };
+    for (const int count : {2, 8, 32}) shell.folder.write("balls" + std::to_string(count) + ".toml", balls(count));
+    const Outcome outcome = shell.kolize(
+        "compare balls2.toml balls8.toml balls32.toml --steps 20 --repeat 6 --vary broadphase.plugin=grid,brute_force "
+        "--report out");
+    REQUIRE(outcome.code == 0);
+    const json rows = json::parse(file_bytes(shell.folder.path() / "out/compare.json"))["variants"];
+    REQUIRE(rows.size() == 6);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        CHECK(rows[i]["scene_file"] == std::vector<std::string>{"balls2.toml", "balls8.toml", "balls32.toml"}[i / 2]);
+        CHECK(rows[i]["ranked"] == true);
+        CHECK((rows[i]["verdict"] == "baseline") == (i % 2 == 0));
+        if (!rows[i]["dominated_by"].is_null())
+            CHECK(rows[i]["dominated_by"].get<std::string>().starts_with(rows[i]["scene_file"].get<std::string>()));
+    }
+    const std::string html = file_bytes(shell.folder.path() / "out/compare.html");
+    CHECK(html.find("<h2>Scaling</h2>") != std::string::npos);
+    CHECK(html.find("<h2>Profile over the scenes</h2>") != std::string::npos);
+    CHECK(shell.kolize("compare --rerun out/compare.json").out.find("state_hash") == std::string::npos);
+}

@@ -20,15 +20,17 @@ std::string label_of(const std::string& pipeline, const Settings& vary) {
     return both.empty() ? "the scene's own" : both;
 }
 
-Variant make_variant(const CompareOptions& options, const std::string& pipeline, const Settings& vary,
-                     const PluginLibrary& plugins) {
+Variant make_variant(const CompareOptions& options, const std::string& scene, const std::string& pipeline,
+                     const Settings& vary, const PluginLibrary& plugins) {
     Variant variant;
-    variant.label = label_of(pipeline, vary);
+    variant.method = variant.label = label_of(pipeline, vary);
+    if (options.scenes.size() > 1) variant.label = scene + ": " + variant.method;
+    variant.scene_file = scene;
     variant.pipeline = pipeline;
     variant.vary = vary;
     Settings set = parse_settings(options.set);
     set.insert(set.end(), vary.begin(), vary.end());
-    variant.scene = load_scene(options.scene, {pipeline, set, plugin_defaults()}, plugins);
+    variant.scene = load_scene(scene, {pipeline, set, plugin_defaults()}, plugins);
     const StepConfig& step = variant.scene.pipeline.step;
     const double time = std::min(step.time, longest_default_time);
     variant.steps = options.length.count(step.dt, time);
@@ -41,9 +43,10 @@ std::vector<Variant> make_variants(const CompareOptions& options, const PluginLi
     std::vector<std::string> pipelines = options.pipelines;
     if (pipelines.empty()) pipelines.emplace_back();
     std::vector<Variant> variants;
-    for (const std::string& pipeline : pipelines)
-        for (const Settings& vary : combinations(parse_variations(options.vary)))
-            variants.push_back(make_variant(options, pipeline, vary, plugins));
+    for (const std::string& scene : options.scenes)
+        for (const std::string& pipeline : pipelines)
+            for (const Settings& vary : combinations(parse_variations(options.vary)))
+                variants.push_back(make_variant(options, scene, pipeline, vary, plugins));
     return variants;
 }
 
@@ -76,7 +79,8 @@ void write_report(const std::filesystem::path& folder, const Comparison& compari
 }
 
 Comparison measure(const CompareOptions& options) {
-    const PluginLibrary plugins = open_plugins(options.plugin_path, std::filesystem::path(options.scene).parent_path());
+    const PluginLibrary plugins =
+        open_plugins(options.plugin_path, std::filesystem::path(options.scenes.front()).parent_path());
     const std::unique_ptr<Host> host = make_host(options.threads);
     Comparison comparison;
     comparison.options = options;
@@ -104,7 +108,7 @@ bool keeps_gates(const Comparison& comparison) {
 }
 
 int compare(const CompareOptions& options) {
-    if (options.scene.empty()) throw Error("a scene file is wanted, or --rerun with a report");
+    if (options.scenes.empty()) throw Error("a scene file is wanted, or --rerun with a report");
     const Comparison comparison = measure(options);
     if (options.json != "-") std::cout << comparison_text(comparison);
     if (!options.json.empty()) write_json(comparison_json(comparison), options.json);
@@ -131,7 +135,8 @@ int rerun(const std::filesystem::path& file) {
 void add_compare(CLI::App& app, int& exit_code) {
     const auto options = std::make_shared<CompareOptions>();
     CLI::App* command = app.add_subcommand("compare", "Run a scene through several pipelines: time against accuracy");
-    CLI::Option* scene = command->add_option("scene", options->scene, "Scene file (TOML)");
+    CLI::Option* scene =
+        command->add_option("scene", options->scenes, "Scene files (TOML); of several each is compared by itself");
     command->add_option("--pipeline", options->pipelines, "Pipeline file, one variant each (repeatable)")
         ->allow_extra_args(false);
     command->add_option("--vary", options->vary, "KEY=V1,V2,...: all combinations are compared (repeatable)")

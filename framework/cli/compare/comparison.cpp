@@ -6,6 +6,7 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <random>
 #include <tuple>
@@ -87,19 +88,19 @@ std::vector<Vec3> places_of(const World& world, std::size_t bodies) {
 }
 
 // Of all variants, in order.
-std::vector<double> moments_of(const std::vector<Variant>& variants) {
+std::vector<double> moments_of(const std::vector<const Variant*>& variants) {
     std::vector<double> times;
-    for (const Variant& v : variants)
-        for (std::uint64_t i = 1; i <= v.steps; ++i)
-            if (is_moment(i, v.steps)) times.push_back(static_cast<double>(i) * v.scene.pipeline.step.dt);
+    for (const Variant* v : variants)
+        for (std::uint64_t i = 1; i <= v->steps; ++i)
+            if (is_moment(i, v->steps)) times.push_back(static_cast<double>(i) * v->scene.pipeline.step.dt);
     std::sort(times.begin(), times.end());
     return times;
 }
 
-// Of the first variant with shorter steps; followed to every time of impact if its narrowphase can do that. Moments
-// that lie between its steps are left out.
-Path reference_path(const std::vector<Variant>& variants, int finer, const PluginLibrary& plugins, Host& host) {
-    Scene scene = variants.front().scene;
+// Of the scene's first variant with shorter steps; followed to every time of impact if its narrowphase can do that.
+// Moments that lie between its steps are left out.
+Path reference_path(const std::vector<const Variant*>& variants, int finer, const PluginLibrary& plugins, Host& host) {
+    Scene scene = variants.front()->scene;
     StepConfig& step = scene.pipeline.step;
     const std::string& narrowphase = scene.pipeline.narrowphase.plugin;
     if (plugins.require(StageKind::narrowphase, narrowphase).descriptor->capabilities.time_of_impact)
@@ -168,17 +169,23 @@ void follow(Variant& variant, const Path* reference, const std::string& judge, c
     if (judges) variant.judged = judges->verdicts().front();
 }
 
-bool is_safe(const Variant& variant) {
-    const RunResult& result = variant.summary;
-    return variant.repeatable && result.escaped == 0 && result.stuck == 0 && std::isfinite(result.energy_drift) &&
-           !(variant.judged && variant.judged->misses.count > 0);
+std::vector<double> costs(const Variant& variant) {
+    std::vector<double> all = variant.step_us();
+    for (double& time : all) time /= variant.scene.pipeline.step.dt;
+    return all;
+}
+
+// Faster is what a verdict calls so; with too few rounds for one, what is faster by more than the noise.
+bool is_faster(const Variant& a, const Variant& b) {
+    const Estimate ratio = paired_ratio(costs(a), costs(b));
+    return std::isinf(ratio.high) ? a.cost_ms() < b.cost_ms() * (1 - time_noise) : ratio.high < 1;
 }
 
 bool beats(const Variant& winner, const Variant& loser) {
-    const double fast = winner.cost_ms(), slow = loser.cost_ms();
+    if (winner.question != loser.question) return false;
     const auto drift = [](const Variant& v) { return std::max(v.summary.energy_drift, drift_floor); };
-    return (fast < slow * (1 - time_noise) && drift(winner) <= drift(loser)) ||
-           (fast <= slow && drift(winner) < drift(loser));
+    return (is_faster(winner, loser) && drift(winner) <= drift(loser)) ||
+           (!is_faster(loser, winner) && drift(winner) < drift(loser));
 }
 
 template <class TakesPart>
@@ -188,10 +195,10 @@ bool on_front(const std::vector<Variant>& variants, const Variant& variant, Take
            });
 }
 
-std::vector<double> costs(const Variant& variant) {
-    std::vector<double> all = variant.step_us();
-    for (double& time : all) time /= variant.scene.pipeline.step.dt;
-    return all;
+const Variant& baseline_of(const std::vector<Variant>& variants, const Variant& variant, const Variant& chosen) {
+    return *std::find_if(variants.begin(), variants.end(), [&](const Variant& other) {
+        return other.scene_file == variant.scene_file && other.method == chosen.method;
+    });
 }
 
 std::vector<std::string> broken_gates(const Variant& variant, const Gates& gates) {
@@ -209,6 +216,12 @@ std::vector<std::string> broken_gates(const Variant& variant, const Gates& gates
 
 }  // namespace
 
+bool is_safe(const Variant& variant) {
+    const RunResult& result = variant.summary;
+    return variant.repeatable && result.escaped == 0 && result.stuck == 0 && std::isfinite(result.energy_drift) &&
+           !(variant.judged && variant.judged->misses.count > 0);
+}
+
 std::vector<double> Variant::step_us() const {
     std::vector<double> times;
     for (const RunResult& run : runs) times.push_back(run.step.median_us);
@@ -218,15 +231,17 @@ std::vector<double> Variant::step_us() const {
 void measure_errors(std::vector<Variant>& variants, const std::string& judge, int finer, const PluginLibrary& plugins,
                     Host& host) {
     for (const Variant& variant : variants) Simulation(variant.scene, plugins, host, 1);
-    Progress progress("compare: errors", variants.size() + (finer > 0));
-    std::optional<Path> reference;
-    if (finer > 0) {
-        reference = reference_path(variants, finer, plugins, host);
-        progress.advance();
-    }
+    Progress progress("compare: errors", variants.size());
+    std::map<std::string, Path> references;  // by scene
     for (Variant& variant : variants) {
+        if (finer > 0 && !references.contains(variant.scene_file)) {
+            std::vector<const Variant*> same_scene;
+            for (const Variant& other : variants)
+                if (other.scene_file == variant.scene_file) same_scene.push_back(&other);
+            references[variant.scene_file] = reference_path(same_scene, finer, plugins, host);
+        }
         variant.question = question_of(variant);
-        follow(variant, reference ? &*reference : nullptr, judge, plugins, host);
+        follow(variant, finer > 0 ? &references[variant.scene_file] : nullptr, judge, plugins, host);
         progress.advance();
     }
 }
@@ -269,8 +284,8 @@ int run_rounds(std::vector<Variant>& variants, int repeat, const PluginLibrary& 
 }
 
 void draw_conclusions(std::vector<Variant>& variants, std::size_t baseline, const Gates& gates) {
-    const Variant& base = variants[baseline];
     for (Variant& variant : variants) {
+        const Variant& base = baseline_of(variants, variant, variants[baseline]);
         variant.ranked = variant.question == base.question;
         variant.ratio = paired_ratio(costs(variant), costs(base));
         variant.verdict = &variant == &base     ? "baseline"

@@ -20,7 +20,9 @@ struct Course {
 };
 
 struct Variant {
-    std::string label;     // pipeline file and varied keys
+    std::string label;   // pipeline file and varied keys, after the scene's name where there are several
+    std::string method;  // the same without the scene: rows of several scenes with one method belong together
+    std::string scene_file;
     std::string pipeline;  // file; "" for the scene's own
     Settings vary;
     bool again = false;  // the baseline a second time: what differs from it is noise
@@ -48,6 +50,9 @@ struct Variant {
     std::vector<std::string> breaks;  // gates
 };
 
+// Nothing escaped, stuck, was missed or differed from run to run.
+bool is_safe(const Variant& variant);
+
 struct Gates {
     std::optional<double> budget_ms;  // median step
     std::optional<double> drift;      // of energy
@@ -55,7 +60,7 @@ struct Gates {
 };
 
 inline constexpr unsigned order_seed = 20080;  // of the order within the rounds
-inline constexpr double time_noise = 0.03;     // steps closer than this are equally fast
+inline constexpr double time_noise = 0.03;     // costs closer than this are the same, where there are too few runs
 inline constexpr double drift_floor = 1e-12;   // smaller energy drifts are equally good
 
 // Runs each variant once and measures its errors; whatever is wrong with any of them comes out before the first timed
@@ -69,7 +74,7 @@ void measure_errors(std::vector<Variant>& variants, const std::string& judge, in
 // the first variant are within 2 %, five at most; returns how many these were.
 int run_rounds(std::vector<Variant>& variants, int repeat, const PluginLibrary& plugins, Host& host);
 
-// Sets ratio, verdict, fronts, dominated_by and breaks.
+// Sets ratio, verdict, fronts, dominated_by and breaks. Each scene has a baseline of its own, with the same method.
 void draw_conclusions(std::vector<Variant>& variants, std::size_t baseline, const Gates& gates);
 
 }  // namespace kolize::cli

@@ -82,10 +82,10 @@ void print_verdicts(const Comparison& comparison, std::ostream& out) {
 }
 
 void print_notes(const Comparison& comparison, std::ostream& out) {
-    out << "\n* no other row is both faster (by more than " << 100 * time_noise
-        << " % of its cost, ms of work for a second of simulated time) and at least as accurate, or as fast and more "
-           "accurate\n  (energy drift, equal below "
-        << drift_floor << "), of those in which nothing escaped, stuck or was missed; o: of all.\n"
+    out << "\n* no other row is both faster (as shown by the interval of their ratio; with fewer than six runs: by "
+        << 100 * time_noise << " %) and at least as\n  accurate (energy drift, equal below " << drift_floor
+        << "), or not slower and more accurate, of those in which nothing escaped, stuck or was missed; o: of all.\n"
+        << "ms/s: work for a second of simulated time, which rows are compared by.\n"
         << "Intervals hold the true median with 95 % confidence: by bootstrap for times, by order statistics of the "
            "ratios "
            "within each round for verdicts.\n";
@@ -129,7 +129,7 @@ Json optional_json(const std::optional<T>& value) {
 }
 
 Json options_json(const CompareOptions& o) {
-    return {{"scene", o.scene},
+    return {{"scenes", o.scenes},
             {"pipelines", o.pipelines},
             {"vary", o.vary},
             {"set", o.set},
@@ -153,7 +153,7 @@ Json estimate_json(const Estimate& e) {
 Json variant_json(const Variant& v) {
     Json vary = Json::object();
     for (const auto& [key, value] : v.vary) vary[key] = value;
-    Json json{{"label", v.label}, {"pipeline_file", v.pipeline}, {"vary", vary}};
+    Json json{{"label", v.label}, {"scene_file", v.scene_file}, {"pipeline_file", v.pipeline}, {"vary", vary}};
     json.update(to_json(v.summary, v.effective));
     json["repeatable"] = v.repeatable;
     json["front"] = v.safe_front;
@@ -192,6 +192,12 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
+std::string scenes_text(const CompareOptions& options) {
+    std::string text;
+    for (const std::string& scene : options.scenes) text += (text.empty() ? "" : ", ") + scene;
+    return text;
+}
+
 std::vector<PluginFile> plugin_files(const std::vector<Variant>& variants, const PluginLibrary& plugins) {
     std::set<std::pair<StageKind, std::string>> names;
     for (const Variant& variant : variants) {
@@ -224,7 +230,7 @@ std::vector<std::string> machine_warnings() {
 std::string comparison_text(const Comparison& comparison) {
     std::ostringstream out;
     const CompareOptions& o = comparison.options;
-    out << o.scene << ": " << comparison.variants.size() - 1 << " pipelines, "
+    out << scenes_text(o) << ": " << comparison.variants.size() - 1 << " pipelines, "
         << comparison.variants.front().runs.size() << " runs of each after " << comparison.warm_up_rounds
         << " to warm up, interleaved with seed " << order_seed << ", " << o.threads
         << (o.threads == 1 ? " thread" : " threads")
@@ -267,8 +273,10 @@ Json comparison_json(const Comparison& comparison) {
         if (!variant.again) rows.push_back(variant_json(variant));
     for (const PluginFile& p : comparison.plugins)
         plugins.push_back({{"stage", p.stage}, {"name", p.name}, {"file", p.file}, {"hash", p.hash}});
-    return {{"scene", comparison.options.scene},
-            {"scene_hash", hash_of(file_bytes(comparison.options.scene))},
+    Json hashes = Json::array();
+    for (const std::string& scene : comparison.options.scenes) hashes.push_back(hash_of(file_bytes(scene)));
+    return {{"scene", scenes_text(comparison.options)},
+            {"scene_hashes", hashes},
             {"repeat", comparison.variants.front().runs.size()},
             {"warm_up_rounds", comparison.warm_up_rounds},
             {"order_seed", order_seed},
@@ -300,7 +308,7 @@ CompareOptions options_from(const Json& report, const std::filesystem::path& fil
             using T = typename std::remove_reference_t<decltype(optional)>::value_type;
             if (!json.at(key).is_null()) optional = json.at(key).get<T>();
         };
-        json.at("scene").get_to(o.scene);
+        json.at("scenes").get_to(o.scenes);
         json.at("pipelines").get_to(o.pipelines);
         json.at("vary").get_to(o.vary);
         json.at("set").get_to(o.set);
@@ -323,7 +331,7 @@ CompareOptions options_from(const Json& report, const std::filesystem::path& fil
 
 std::vector<std::string> compare_reports(const Json& first, const Json& second) {
     std::vector<std::string> differences;
-    if (first["scene_hash"] != second["scene_hash"]) differences.push_back("the scene file is another one");
+    if (first["scene_hashes"] != second["scene_hashes"]) differences.push_back("a scene file is another one");
     const Json &rows = first["variants"], &others = second["variants"];
     if (rows.size() != others.size()) return {"it has " + std::to_string(others.size()) + " rows now"};
     for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -6,7 +6,7 @@
 namespace kolize::cli {
 
 struct CompareOptions {
-    std::string scene;
+    std::vector<std::string> scenes;
     std::vector<std::string> pipelines, vary, set, plugin_path;
     RunLength length;
     int repeat = 0;
@@ -38,6 +38,8 @@ std::vector<PluginFile> plugin_files(const std::vector<Variant>& variants, const
 // A busy machine, a build without optimisation.
 std::vector<std::string> machine_warnings();
 
+// "a.toml, b.toml"
+std::string scenes_text(const CompareOptions& options);
 std::string comparison_text(const Comparison& comparison);
 std::string comparison_csv(const Comparison& comparison);
 Json comparison_json(const Comparison& comparison);

@@ -227,6 +227,91 @@ std::string course_chart(const Rows& rows, std::vector<double> Course::*values, 
     return chart(342, name, out.str());
 }
 
+// Rows of several scenes by their method, in the order of the first scene.
+std::vector<std::pair<std::string, Rows>> by_method(const Rows& rows) {
+    std::vector<std::pair<std::string, Rows>> methods;
+    for (const Variant* v : rows) {
+        const auto known =
+            std::find_if(methods.begin(), methods.end(), [&](const auto& m) { return m.first == v->method; });
+        (known == methods.end() ? methods.emplace_back(v->method, Rows{}) : *known).second.push_back(v);
+    }
+    return methods;
+}
+
+std::string method_legend(const std::vector<std::pair<std::string, Rows>>& methods) {
+    std::string out = "<ul class=\"legend\">";
+    for (std::size_t i = 0; i < methods.size(); ++i)
+        out += "<li><span class=\"swatch\" style=\"background:" + colour(i) + "\"></span>" + escaped(methods[i].first) +
+               "</li>";
+    return out + "</ul>\n";
+}
+
+// Cost over the number of bodies, both logarithmic: a slope of 1 is cost in proportion.
+std::string scaling_chart(const std::vector<std::pair<std::string, Rows>>& methods) {
+    constexpr double top = 28, bottom = 300;
+    double few = infinity, many = 0, cheap = infinity, dear = 0;
+    for (const auto& [name, rows] : methods)
+        for (const Variant* v : rows) {
+            few = std::min(few, double(v->summary.bodies)), many = std::max(many, double(v->summary.bodies));
+            cheap = std::min(cheap, v->cost_ms()), dear = std::max(dear, v->cost_ms());
+        }
+    if (!(many > few)) return {};
+    const Axis x(few, many, left, right, true), y(std::max(cheap, 1e-6), dear, bottom, top, true);
+    std::ostringstream out;
+    out << frame(x, y, top, bottom, "bodies", "ms of work for a second of simulated time");
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        Rows rows = methods[i].second;
+        std::stable_sort(rows.begin(), rows.end(),
+                         [](auto a, auto b) { return a->summary.bodies < b->summary.bodies; });
+        out << "<polyline fill=\"none\" stroke-width=\"1.5\" stroke=\"" << colour(i) << '"' << dash(i) << " points=\"";
+        for (const Variant* v : rows) out << x.at(double(v->summary.bodies)) << ',' << y.at(v->cost_ms()) << ' ';
+        out << "\"/>";
+        for (const Variant* v : rows)
+            out << "<circle r=\"3\" cx=\"" << x.at(double(v->summary.bodies)) << "\" cy=\"" << y.at(v->cost_ms())
+                << "\" fill=\"" << colour(i) << "\"><title>" << escaped(v->label) << "</title></circle>";
+    }
+    return "<h2>Scaling</h2>\n" + chart(342, "Scaling with the number of bodies", out.str()) + method_legend(methods);
+}
+
+// Performance profile (Dolan and More 2002): the share of scenes in which a method takes at most so many times as long
+// as the fastest safe one there; a row that is not on equal terms, or not safe, counts as infinitely slow.
+std::string profile_chart(const Comparison& comparison, const std::vector<std::pair<std::string, Rows>>& methods) {
+    constexpr double top = 28, bottom = 300;
+    const std::vector<std::string>& scenes = comparison.options.scenes;
+    const auto cost = [](const Variant* v) { return v->ranked && is_safe(*v) ? v->cost_ms() : infinity; };
+    std::vector<double> best;
+    for (const std::string& scene : scenes) {
+        best.push_back(infinity);
+        for (const auto& [name, rows] : methods)
+            for (const Variant* v : rows)
+                if (v->scene_file == scene) best.back() = std::min(best.back(), cost(v));
+    }
+    double worst = 1;
+    std::vector<std::vector<double>> times_best;
+    for (const auto& [name, rows] : methods) {
+        times_best.emplace_back();
+        for (const Variant* v : rows) {
+            const auto scene =
+                static_cast<std::size_t>(std::find(scenes.begin(), scenes.end(), v->scene_file) - scenes.begin());
+            times_best.back().push_back(cost(v) / best[scene]);
+            if (std::isfinite(times_best.back().back())) worst = std::max(worst, times_best.back().back());
+        }
+        std::sort(times_best.back().begin(), times_best.back().end());
+    }
+    const Axis x(1, std::max(worst, 1.1), left, right, true), y(0, 1, bottom, top, false);
+    std::ostringstream out;
+    out << frame(x, y, top, bottom, "times as long as the fastest of the scene", "share of scenes");
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        out << "<path fill=\"none\" stroke-width=\"1.5\" stroke=\"" << colour(i) << '"' << dash(i) << " d=\"M" << left
+            << ' ' << y.at(0);
+        double share = 0;
+        for (const double times : times_best[i])
+            if (std::isfinite(times)) out << 'H' << x.at(times) << 'V' << y.at(share += 1 / double(scenes.size()));
+        out << 'H' << right << "\"><title>" << escaped(methods[i].first) << "</title></path>";
+    }
+    return "<h2>Profile over the scenes</h2>\n" + chart(342, "Performance profile", out.str()) + method_legend(methods);
+}
+
 std::string table(const Comparison& comparison) {
     std::ostringstream out;
     out << "<div class=\"scroll\"><table><tr><th>pipeline</th><th>front</th><th>step \u00b5s (95 %)</th><th>p95 "
@@ -280,7 +365,8 @@ std::string facts(const Comparison& comparison, const Json& json) {
     for (const char* key :
          {"date", "cpu", "cores", "governor", "load", "compiler", "build_type", "version", "plugin_api"})
         fact(key, plain(host[key]));
-    fact("scene", comparison.options.scene + ", hash " + plain(json["scene_hash"]));
+    for (std::size_t i = 0; i < comparison.options.scenes.size(); ++i)
+        fact("scene", comparison.options.scenes[i] + ", hash " + plain(json["scene_hashes"][i]));
     fact("runs", std::to_string(comparison.variants.front().runs.size()) + " of each after " +
                      std::to_string(comparison.warm_up_rounds) + " to warm up, interleaved, order by seed " +
                      std::to_string(order_seed));
@@ -299,8 +385,8 @@ std::string comparison_html(const Comparison& comparison, const Json& json) {
     std::ostringstream out;
     out << "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
            "content=\"width=device-width,initial-scale=1\"><title>"
-        << escaped(comparison.options.scene) << "</title><style>" << style << "</style></head><body>\n<h1>"
-        << escaped(comparison.options.scene) << "</h1>\n";
+        << escaped(scenes_text(comparison.options)) << "</title><style>" << style << "</style></head><body>\n<h1>"
+        << escaped(scenes_text(comparison.options)) << "</h1>\n";
     for (const std::string& warning : comparison.warnings)
         out << "<p class=\"warning\">" << escaped(warning) << "</p>\n";
     out << table(comparison)
@@ -316,6 +402,10 @@ std::string comparison_html(const Comparison& comparison, const Json& json) {
     if (comparison.options.reference > 0)
         out << "<h2>Path error over time</h2>\n"
             << course_chart(rows, &Course::path_error, "mean distance from the reference, in sizes of a body", 1e-16);
+    if (comparison.options.scenes.size() > 1) {
+        const auto methods = by_method(rows);
+        out << scaling_chart(methods) << profile_chart(comparison, methods);
+    }
     std::string data = json.dump(-1, ' ', false, Json::error_handler_t::replace);
     for (std::size_t at = 0; (at = data.find('<', at)) != std::string::npos; at += 6) data.replace(at, 1, "\\u003c");
     out << "<h2>How it was measured</h2>\n"
